@@ -1,0 +1,67 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace softgrain {
+
+/// What one time step did.
+struct StepReport {
+  int contacts = 0;          ///< contacts that carry impulse
+  int sweeps = 0;
+  double residual_mean = 0;  ///< [-] see SolverReport
+  double residual_max = 0;   ///< [-]
+  double overlap_mean = 0;   ///< mean overlap of the contacts that carry impulse, over the mean primary radius [-]
+  double overlap_max = 0;    ///< worst overlap, over the mean primary radius [-]
+  bool converged = false;
+};
+
+/// One number of a row of series.csv.
+struct Quantity {
+  std::string name;
+  std::string unit;  ///< SI, "" for none
+  double value = 0;
+};
+
+/// A named array of a checkpoint, row-major: shape (rows, columns), columns = 1 for scalars.
+struct Array {
+  std::size_t columns = 1;
+  std::variant<std::vector<double>, std::vector<std::int64_t>> values;
+};
+
+/// Everything that a simulation needs to go on as if it had never stopped, bit for bit.
+struct Checkpoint {
+  std::int64_t step = 0;
+  double time = 0;  ///< [s]
+  std::map<std::string, Array> arrays;
+};
+
+/// What can be drawn: disks, walls as segments, and contacts as segments with their force.
+struct Scene {
+  std::map<std::string, Array> particles;  ///< position (n, 2), radius, then any field by primary particle
+  std::map<std::string, Array> contacts;   ///< pair (m, 2) of particle indices, force (m, 1) [N/m]
+  std::vector<double> wall_segments;       ///< x0 y0 x1 y1 for each wall [m]
+};
+
+/// The one abstract class: an experiment with a model of a grain, advanced step by step.
+class Simulation {
+ public:
+  virtual ~Simulation() = default;
+  virtual bool finished() const = 0;
+  virtual double progress() const = 0;  ///< 0 at the start, 1 when finished; never goes back
+  virtual double time() const = 0;      ///< [s]
+  virtual std::int64_t steps_done() const = 0;
+  virtual std::int64_t steps_planned() const = 0;
+  /// Advances by one time step. Raises NumericalError when the state is not finite or the overlap shows that no
+  /// solution exists.
+  virtual StepReport step() = 0;
+  /// The row of series.csv now. Wall forces are means over the steps since the last call of `observe`.
+  virtual std::vector<Quantity> observe() = 0;
+  virtual Scene scene() const = 0;
+  virtual Checkpoint checkpoint() const = 0;
+  virtual void restore(const Checkpoint& checkpoint) = 0;
+};
+
+}  // namespace softgrain
