@@ -1,0 +1,124 @@
+// The command line program: parses the arguments, calls one verb, turns its outcome into an exit code.
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/core/version.hpp"
+#include "softgrain/io/suggest.hpp"
+#include "terminal.hpp"
+#include "verbs.hpp"
+
+namespace softgrain {
+
+void add_case_arguments(CLI::App& verb, CaseArguments& arguments) {
+  verb.add_option("CASE", arguments.path, "case file, as written by `softgrain new`")->required();
+  verb.add_option("--set", arguments.sets, "key=value: replaces one value of the case; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+namespace {
+
+enum : int { success = 0, our_bug = 1, usage = 2, numerical = 3, input_output = 4 };
+
+void add_verbs(CLI::App& app) {
+  add_new_verb(app);
+  add_check_verb(app);
+  if (add_run_verb) add_run_verb(app);
+  if (add_plot_verb) add_plot_verb(app);
+  if (add_info_verb) add_info_verb(app);
+  if (add_solve_verb) add_solve_verb(app);
+  add_schema_verb(app);
+  add_doctor_verb(app);
+}
+
+/// The verb that was named on the command line, or the program itself when there is none.
+CLI::App& chosen_verb(CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? app : *chosen.front();
+}
+
+std::vector<std::string> verb_names(CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; }))
+    names.push_back(verb->get_name());
+  return names;
+}
+
+std::vector<std::string> option_names(CLI::App& verb) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : verb.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+/// What is wrong with the command line, in one sentence, with the nearest word that would have been right.
+std::string explain(CLI::App& app, const CLI::ParseError& error) {
+  CLI::App& verb = chosen_verb(app);
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return error.what();
+  const auto extras = verb.remaining().empty() ? app.remaining() : verb.remaining();
+  if (extras.empty()) return error.what();
+  const std::string& word = extras.front();
+  if (word.starts_with('-')) {
+    const std::string name = word.substr(0, word.find('='));
+    return fmt::format("unknown option '{}'{}", name, did_you_mean(name, option_names(verb)));
+  }
+  if (&verb == &app) return fmt::format("unknown verb '{}'{}", word, did_you_mean(word, verb_names(app)));
+  return fmt::format("unexpected argument '{}'", word);
+}
+
+int refuse_command_line(CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version: stdout, exit code 0
+  const CLI::App& verb = chosen_verb(app);
+  const std::string name = &verb == &app ? "softgrain" : "softgrain " + verb.get_name();
+  print_error(fmt::format("error: {}\ntry '{} --help'", explain(app, error), name));
+  return usage;
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App app{"softgrain: simulation of soft granular matter"};
+  const BuildInfo build = build_info();
+  app.set_version_flag("--version", fmt::format("softgrain {} ({})", build.version, build.commit));
+  app.require_subcommand(1);
+  app.footer(
+      "Examples:\n"
+      "  softgrain new squeeze                  writes squeeze/case.toml, commented\n"
+      "  softgrain check squeeze/case.toml      what it would do and what it would cost\n"
+      "\nExit codes: 0 done, 1 our bug, 2 usage or invalid case, 3 numerical failure, 4 input/output.");
+  add_verbs(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return refuse_command_line(app, error);
+  }
+  if (std::fflush(stdout) != 0) throw IoError("cannot write to stdout");
+  return success;
+}
+
+}  // namespace
+}  // namespace softgrain
+
+int main(int argc, char** argv) {
+  using namespace softgrain;
+  try {
+    return run_program(argc, argv);
+  } catch (const ExitCode& exit) {
+    return exit.code;
+  } catch (const UsageError& error) {
+    print_error(fmt::format("error: {}", error.what()));
+    return usage;
+  } catch (const NumericalError& error) {
+    print_error(fmt::format("error: {}", error.what()));
+    return numerical;
+  } catch (const IoError& error) {
+    print_error(fmt::format("error: {}", error.what()));
+    return input_output;
+  } catch (const std::exception& error) {
+    print_error(fmt::format("error: {}\nthis is a bug, please report", error.what()));
+    return our_bug;
+  }
+}

@@ -1,0 +1,36 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace softgrain {
+
+/// Thrown by a verb's callback to end the program with an exit code of its own, without a message: 130 after
+/// SIGINT, 75 after SIGTERM (requeue me). Errors are exceptions of core/error.hpp; plain return is exit code
+/// 0.
+struct ExitCode {
+  int code;
+};
+
+/// What every verb that reads a case takes: `CASE [--set key=value]...`.
+struct CaseArguments {
+  std::string path;
+  std::vector<std::string> sets;
+};
+void add_case_arguments(CLI::App& verb, CaseArguments& arguments);
+
+// One verb each: adds a subcommand whose callback does the work after the whole command line has been parsed.
+// Results go to stdout, progress and log to stderr.
+void add_new_verb(CLI::App& app);
+void add_check_verb(CLI::App& app);
+void add_schema_verb(CLI::App& app);
+void add_doctor_verb(CLI::App& app);
+[[gnu::weak]] void add_run_verb(CLI::App& app);  // run and resume; weak until every verb is there
+[[gnu::weak]] void add_plot_verb(CLI::App& app);
+[[gnu::weak]] void add_info_verb(CLI::App& app);
+[[gnu::weak]] void add_solve_verb(CLI::App& app);
+
+}  // namespace softgrain
