@@ -6,19 +6,21 @@ namespace softgrain {
 struct SolverOptions {
   int min_sweeps = 1;
   int max_sweeps = 1000;
-  double tolerance = 1e-4;      ///< on the mean velocity violation, in units of velocity_scale
-  double worst_factor = 16;     ///< the worst contact may be this many times worse (as LMGC90's QM/16)
-  double velocity_scale = 0;    ///< [m/s]; for particles: diameter / time step, so that the violation is the penetration
-                                ///< gained in a step over a diameter. 0: the root mean square of q.
-  double relaxation = 1;        ///< omega of p <- p + omega (p_new - p), in (0, 2) without friction
-  int check_every = 1;          ///< sweeps between two looks at the residual
+  double tolerance = 1e-4;    ///< on the mean velocity violation, in units of velocity_scale
+  double worst_factor = 16;   ///< the worst contact may be this many times worse (as LMGC90's QM/16)
+  double velocity_scale = 0;  ///< [m/s]; for particles: diameter / time step, so that the violation is the
+                              ///< penetration gained in a step over a diameter. 0: rms of u_c - W_cc p_c at
+                              ///< the start, which from p = 0 is q.
+  double relaxation = 1;  ///< omega of p <- p + omega (p_new - p), in (0, 2) without friction
+  int check_every = 1;    ///< sweeps between two looks at the residual
 };
 
 /// What a contact algorithm reached. Not converged is a value, not an exception.
 struct SolverReport {
   int sweeps = 0;
-  double residual_mean = 0;  ///< root mean square violation over contacts that carry impulse or are violated [-]
-  double residual_max = 0;   ///< worst contact [-]
+  double residual_mean =
+      0;  ///< root mean square violation over contacts that carry impulse or are violated [-]
+  double residual_max = 0;  ///< worst contact [-]
   bool converged = false;
 };
 

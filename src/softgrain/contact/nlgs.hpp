@@ -1,0 +1,81 @@
+#pragma once
+#include <cmath>
+#include <span>
+
+#include "softgrain/contact/contact_system.hpp"
+#include "softgrain/contact/residual.hpp"
+#include "softgrain/contact/signorini_coulomb.hpp"
+#include "softgrain/contact/solver_options.hpp"
+
+namespace softgrain {
+
+/// A system may bring its own sweep: the same mathematics as nlgs_sweep, in the order of the contacts, fused
+/// with its data.
+template <class S, int Dim>
+concept HasOwnSweep = requires(S& s, std::span<Vec<Dim>> impulse, std::span<const double> friction,
+                               const SolverOptions& options) {
+  { s.sweep(impulse, friction, options) } -> std::same_as<Violation>;
+};
+
+/// One pass of nonlinear Gauss-Seidel: every contact in turn is solved exactly with the others frozen,
+///   q_c = u_c - W_cc p_c,  p_c <- P(p_c + omega (p_c' - p_c)),  p_c' the solution of one contact under q_c,
+/// and the bodies move at once; P, the projection on the Coulomb cone, acts only for omega > 1. Returns the
+/// violation that each contact showed when its turn came. Allocates nothing.
+template <int Dim, ContactSystem<Dim> System>
+Violation nlgs_sweep(System& system, std::span<Vec<Dim>> impulse, std::span<const double> friction,
+                     double relaxation) {
+  Violation violation;
+  for (int c = 0; c < system.size(); ++c) {
+    Vec<Dim>& p = impulse[c];
+    const Mat<Dim> W = system.delassus_block(c);
+    const Vec<Dim> q = system.relative_velocity(c) - W * p;
+    const Vec<Dim> solved = solve_signorini_coulomb(W, q, friction[c]);
+    const Vec<Dim> jump = W * (solved - p);
+    violation.add(dot(jump, jump), solved[0] > 0);
+    Vec<Dim> next = p + relaxation * (solved - p);
+    if (relaxation > 1) next = project_on_coulomb_cone(next, friction[c]);
+    const Vec<Dim> dp = next - p;
+    if (dp == Vec<Dim>{}) continue;
+    p = next;
+    system.apply_impulse(c, dp);
+  }
+  return violation;
+}
+
+/// Root mean square over contacts of the velocity that the others give, u_c - W_cc p_c [m/s]: from p = 0 that
+/// of q.
+template <int Dim, ContactSystem<Dim> System>
+double typical_velocity(const System& system, std::span<const Vec<Dim>> impulse) {
+  double sum = 0;
+  for (int c = 0; c < system.size(); ++c) {
+    const Vec<Dim> q = system.relative_velocity(c) - system.delassus_block(c) * impulse[c];
+    sum += dot(q, q);
+  }
+  return sum > 0 ? std::sqrt(sum / system.size()) : 1;
+}
+
+/// Nonlinear Gauss-Seidel (Moreau, Jean): sweeps over the contacts in the order given until the law holds
+/// everywhere to the tolerance, or max_sweeps. `impulse` [N s] is the start (warm start) and becomes the
+/// solution; the velocities of `system` must already include it, and include the solution on return.
+/// `friction` holds mu of every contact. Converged iff rms(v_c) <= tolerance and max(v_c) <= worst_factor
+/// tolerance, in units of velocity_scale.
+template <int Dim, ContactSystem<Dim> System>
+SolverReport solve_nlgs(System& system, std::span<Vec<Dim>> impulse, std::span<const double> friction,
+                        const SolverOptions& options) {
+  const double scale =
+      options.velocity_scale > 0 ? options.velocity_scale : typical_velocity<Dim>(system, impulse);
+  SolverReport report;
+  for (int sweep = 1; sweep <= options.max_sweeps; ++sweep) {
+    Violation violation;
+    if constexpr (HasOwnSweep<System, Dim>)
+      violation = system.sweep(impulse, friction, options);
+    else
+      violation = nlgs_sweep<Dim>(system, impulse, friction, options.relaxation);
+    report = report_of(violation, sweep, scale, options);
+    const bool broken = !std::isfinite(report.residual_max);
+    if (broken || (report.converged && sweep >= options.min_sweeps)) break;
+  }
+  return report;
+}
+
+}  // namespace softgrain
