@@ -1,0 +1,70 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace softgrain {
+
+/// Owns a file descriptor of the operating system; -1 is none.
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) : number_(number) {}
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~Descriptor();
+
+  int number() const { return number_; }
+  /// False when the system reports a late failure to write.
+  bool close();
+
+ private:
+  int number_;
+};
+
+/// open(2) with O_CLOEXEC and mode 0666. Raises IoError.
+Descriptor open_file(const std::filesystem::path& path, int flags);
+
+/// The whole file. Raises IoError.
+std::string read_file(const std::filesystem::path& path);
+
+/// A file that appears under its name complete or not at all: the bytes go to `path`.tmp and to the disk
+/// (fsync) first, `commit` renames. Without `commit` nothing is left. Raises IoError naming the path and the
+/// bytes needed.
+class PendingFile {
+ public:
+  PendingFile(std::filesystem::path path, std::string_view bytes);
+  ~PendingFile();
+  PendingFile(const PendingFile&) = delete;
+  PendingFile& operator=(const PendingFile&) = delete;
+
+  const std::filesystem::path& temporary() const { return temporary_; }
+  void commit();
+
+ private:
+  std::filesystem::path path_, temporary_;
+  bool committed_ = false;
+};
+
+/// Replaces the file's contents in one piece.
+void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// A file that only grows, each piece by one write(): series.csv, log.txt. A piece that does not fit on the
+/// disk is taken back. Raises IoError naming the path and the bytes needed.
+class AppendFile {
+ public:
+  explicit AppendFile(std::filesystem::path path);
+
+  void append(std::string_view text);
+  /// Waits until all is on the disk.
+  void sync();
+
+ private:
+  std::filesystem::path path_;
+  Descriptor file_;
+};
+
+}  // namespace softgrain
