@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that softgrain needs; the only place that names them. Does nothing when all are there.
+#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, bench, clang
+#   tools/install_dependencies.sh --list                 the table below
+# Why each was chosen: docs/decisions/0002-dependencies.md
+set -euo pipefail
+
+table() {
+  cat <<'TABLE'
+build      g++                     C++20 compiler
+build      make                    the short commands of the Makefile
+build      cmake                   configures the build
+build      ninja-build             runs the build
+build      git                     the commit that each run records
+libraries  libfmt-dev              text formatting
+libraries  libcli11-dev            command line arguments
+libraries  libtomlplusplus-dev     case files
+libraries  nlohmann-json3-dev      run.json and the case schema
+libraries  libhdf5-dev             snapshots
+libraries  libxxhash-dev           content hash of a snapshot
+libraries  zlib1g-dev              compressed files for ParaView
+libraries  libeigen3-dev           sparse matrices of contact problems
+tests      doctest-dev             unit, verification and program tests
+pictures   python3                 softgrain plot
+pictures   python3-numpy           softgrain plot
+pictures   python3-matplotlib      softgrain plot
+pictures   python3-h5py            softgrain plot reads the snapshots
+checks     python3                 tools/check_layers
+checks     clang-format            one format for all sources
+checks     clang-tidy              names and common mistakes
+checks     libomp-dev              omp.h for clang-tidy
+bench      libbox2d-dev            a peer to measure against
+bench      libsiconos-numerics-dev a peer to measure against
+clang      clang                   the second compiler (preset clang)
+clang      libomp-dev              its OpenMP
+TABLE
+}
+
+groups="build libraries tests pictures"
+while (($#)); do
+  case "$1" in
+    --list) table && exit 0 ;;
+    --with) groups+=" ${2:?--with needs a group: checks, bench or clang}" && shift 2 ;;
+    *) sed -n '2,4s/^# //p' "$0" >&2 && exit 2 ;;
+  esac
+done
+for group in $groups; do
+  table | grep -q "^$group " || { echo "$0: no group '$group'; see --list" >&2 && exit 2; }
+done
+
+wanted=$(table | awk -v groups=" $groups " 'index(groups, " " $1 " ") && !seen[$2]++')
+if ! command -v dpkg-query apt-get >/dev/null; then
+  echo "$0: not a Debian system; going on with what is installed. Needed, by their Debian names:" $(awk '{print $2}' <<<"$wanted") >&2
+  exit 0
+fi
+
+installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' $(awk '{print $2}' <<<"$wanted") 2>/dev/null |
+  awk '$2 == "installed" {print $1}' || true)
+missing=$(awk 'NR == FNR {there[$1]; next} !($2 in there)' <(echo "$installed") <(echo "$wanted"))
+[[ -n $missing ]] || exit 0
+
+echo "Installing what is missing:"
+awk '{name = $2; $1 = $2 = ""; printf "  %-24s%s\n", name, $0}' <<<"$missing"
+packages=$(awk '{print $2}' <<<"$missing")
+
+as_root=()
+if ((EUID != 0)); then
+  command -v sudo >/dev/null || { echo "Needs root, and there is no sudo. As root: apt-get install" $packages >&2 && exit 1; }
+  as_root=(sudo)
+fi
+apt() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@" </dev/null; }
+install() { apt install -y --no-install-recommends $packages; }
+
+# The first try is silent: on a new machine it only shows that the package lists are missing or old.
+install >/dev/null 2>&1 || { apt update && install; } || {
+  echo "apt-get could not install:" $packages >&2
+  echo "Is this machine online? Otherwise install them from a mirror or medium, then run this again." >&2
+  exit 1
+}
