@@ -5,7 +5,8 @@
 
 namespace softgrain {
 
-/// One experiment, complete: what a case file says, in SI units, with every default filled in. Per metre of depth.
+/// One experiment, complete: what a case file says, in SI units, with every default filled in. Per metre of
+/// depth.
 struct Case {
   struct Experiment {
     std::string loading = "diametral";  ///< the loading path
@@ -13,30 +14,31 @@ struct Case {
   } experiment;
 
   struct Grain {
-    double radius = 5e-3;   ///< R [m]
-    double density = 990;   ///< rho [kg/m^3]: the grain weighs rho pi R^2
+    double radius = 5e-3;  ///< R [m]
+    double density = 990;  ///< rho [kg/m^3]: the grain weighs rho pi R^2
   } grain;
 
   struct Bpm {
-    int primaries = 1750;          ///< rigid primary particles in a grain
-    double size_ratio = 1.625;     ///< largest over smallest primary diameter (paper: 0.26 mm / 0.16 mm)
-    double attraction = 100;       ///< F0 [N/m]
-    double exponent = 7;           ///< gamma [-]
+    int primaries = 1750;       ///< rigid primary particles in a grain
+    double size_ratio = 1.625;  ///< largest over smallest primary diameter (paper: 0.26 mm / 0.16 mm)
+    double attraction = 100;    ///< F0 [N/m]
+    double exponent = 7;        ///< gamma [-]
   } bpm;
 
   struct Contact {
-    double friction = 0;           ///< mu between primaries of one grain
-    double wall_friction = 0;      ///< mu against walls
-    double restitution = 0;        ///< e_n, Newton's
-    std::string activation = "anticipated";  ///< when a contact is active: "anticipated" or "closed_at_mid_step"
-    double push_out = 0.1;         ///< beta: share of an existing overlap removed in a step
+    double friction = 0;       ///< mu between primaries of one grain
+    double wall_friction = 0;  ///< mu against walls
+    double restitution = 0;    ///< e_n, Newton's
+    std::string activation =
+        "anticipated";      ///< when a contact is active: "anticipated" or "closed_at_mid_step"
+    double push_out = 0.1;  ///< beta: share of an existing overlap removed in a step
   } contact;
 
   struct Solver {
     int min_sweeps = 10;
     int max_sweeps = 50;
-    double tolerance = 2e-5;       ///< mean penetration gained in a step over the mean primary diameter
-    double relaxation = 1.3;       ///< omega
+    double tolerance = 2e-5;  ///< mean penetration gained in a step over the mean primary diameter
+    double relaxation = 1.3;  ///< omega
   } solver;
 
   struct Loading {
@@ -55,9 +57,9 @@ struct Case {
   } sample;
 
   struct Output {
-    int samples = 600;    ///< rows of series.csv, evenly over the run
-    int snapshots = 24;   ///< restart points, evenly over the run
-    bool vtk = true;      ///< .vtp files for ParaView beside the snapshots
+    int samples = 600;   ///< rows of series.csv, evenly over the run
+    int snapshots = 24;  ///< restart points, evenly over the run
+    bool vtk = true;     ///< .vtp files for ParaView beside the snapshots
   } output;
 };
 

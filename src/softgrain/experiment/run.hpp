@@ -14,7 +14,8 @@ struct RunReport {
   void add(const StepReport& step);
 };
 
-/// Sees each step; returns false to stop the run after it (signal, time limit). Files and text live behind it.
+/// Sees each step; returns false to stop the run after it (signal, time limit). Files and text live behind
+/// it.
 class Recorder {
  public:
   virtual ~Recorder() = default;

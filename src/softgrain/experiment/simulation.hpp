@@ -5,18 +5,9 @@
 #include <variant>
 #include <vector>
 
-namespace softgrain {
+#include "softgrain/contact/step_report.hpp"
 
-/// What one time step did.
-struct StepReport {
-  int contacts = 0;          ///< contacts that carry impulse
-  int sweeps = 0;
-  double residual_mean = 0;  ///< [-] see SolverReport
-  double residual_max = 0;   ///< [-]
-  double overlap_mean = 0;   ///< mean overlap of the contacts that carry impulse, over the mean primary radius [-]
-  double overlap_max = 0;    ///< worst overlap, over the mean primary radius [-]
-  bool converged = false;
-};
+namespace softgrain {
 
 /// One number of a row of series.csv.
 struct Quantity {
@@ -54,8 +45,8 @@ class Simulation {
   virtual double time() const = 0;      ///< [s]
   virtual std::int64_t steps_done() const = 0;
   virtual std::int64_t steps_planned() const = 0;
-  /// Advances by one time step. Raises NumericalError when the state is not finite or the overlap shows that no
-  /// solution exists.
+  /// Advances by one time step. Raises NumericalError when the state is not finite or the overlap shows that
+  /// no solution exists.
   virtual StepReport step() = 0;
   /// The row of series.csv now. Wall forces are means over the steps since the last call of `observe`.
   virtual std::vector<Quantity> observe() = 0;

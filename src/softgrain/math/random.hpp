@@ -4,9 +4,10 @@
 
 namespace softgrain {
 
-/// Philox 4x32-10 (Salmon et al. 2011): four random words from a counter and a key, without state, so the numbers do not
-/// depend on the number of threads or on the order of the calls.
-constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key) {
+/// Philox 4x32-10 (Salmon et al. 2011): four random words from a counter and a key, without state, so the
+/// numbers do not depend on the number of threads or on the order of the calls.
+constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
+                                              std::array<std::uint32_t, 2> key) {
   for (int round = 0; round < 10; ++round) {
     const std::uint64_t a = 0xD2511F53ull * counter[0];
     const std::uint64_t b = 0xCD9E8D57ull * counter[2];

@@ -1,0 +1,142 @@
+#include "softgrain/rigid/contact_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "softgrain/math/lanes.hpp"
+#include "softgrain/rigid/lane_sweep.hpp"
+
+namespace softgrain {
+namespace {
+
+/// So large that no impulse ever answers it: an inactive contact.
+constexpr double inactive_offset = 1e30;
+
+/// (s_a + s_b) x n: the surfaces' velocity at the contact.
+Vec<2> surface_velocity(const Vec<1>& spin_sum, const Vec<2>& n) { return spin_sum[0] * perpendicular(n); }
+Vec<3> surface_velocity(const Vec<3>& spin_sum, const Vec<3>& n) { return cross(spin_sum, n); }
+
+/// n x P: how an impulse P at the contact turns both bodies.
+Vec<1> turning(const Vec<2>& n, const Vec<2>& impulse) { return {n[0] * impulse[1] - n[1] * impulse[0]}; }
+Vec<3> turning(const Vec<3>& n, const Vec<3>& impulse) { return cross(n, impulse); }
+
+}  // namespace
+
+std::array<Vec<3>, 2> tangents(const Vec<3>& n) {
+  // Duff et al. 2017: continuous but at n_z = 0
+  const double sign = std::copysign(1.0, n[2]);
+  const double a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
+  return {Vec<3>{1 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]},
+          Vec<3>{b, sign + n[1] * n[1] * a, -n[1]}};
+}
+
+template <int Dim>
+void signorini_offset(const RigidContacts<Dim>& contacts, std::span<const Vec<Dim>> velocity_start,
+                      const ContactLaw& law, double dt, std::vector<double>& offset) {
+  offset.resize(contacts.size());
+  for (int c = 0; c < contacts.size(); ++c) {
+    const double gap = contacts.gap[c];
+    if (gap > 0) {
+      offset[c] = law.activation == Activation::anticipated ? gap / dt : inactive_offset;
+      continue;
+    }
+    offset[c] = law.push_out * gap / dt;
+    if (law.restitution > 0) {
+      const Vec<Dim> u = velocity_start[contacts.body_b[c]] - velocity_start[contacts.body_a[c]];
+      offset[c] += law.restitution * dot(contacts.normal[c], u);
+    }
+  }
+}
+
+template <int Dim>
+Mat<Dim> RigidContactSystem<Dim>::delassus_block(int contact) const {
+  const double W_nn = contacts_.inverse_mass_a[contact] + contacts_.inverse_mass_b[contact];
+  Mat<Dim> W;
+  W(0, 0) = W_nn;
+  for (int k = 1; k < Dim; ++k) W(k, k) = (1 + particles_.inertia_ratio) * W_nn;
+  return W;
+}
+
+template <int Dim>
+Vec<Dim> RigidContactSystem<Dim>::relative_velocity(int contact) const {
+  const int a = contacts_.body_a[contact], b = contacts_.body_b[contact];
+  const Vec<Dim>& n = contacts_.normal[contact];
+  const Vec<Dim> along = particles_.velocity[b] - particles_.velocity[a];
+  const Vec<Dim> slip = along - surface_velocity(particles_.spin[a] + particles_.spin[b], n);
+  Vec<Dim> u;
+  u[0] = dot(n, along) + offset_[contact];
+  const auto t = tangents(n);
+  for (int k = 1; k < Dim; ++k) u[k] = dot(t[k - 1], slip);
+  return u;
+}
+
+template <int Dim>
+void RigidContactSystem<Dim>::apply_impulse(int contact, const Vec<Dim>& dp) {
+  const int a = contacts_.body_a[contact], b = contacts_.body_b[contact];
+  const double inverse_a = contacts_.inverse_mass_a[contact], inverse_b = contacts_.inverse_mass_b[contact];
+  const Vec<Dim>& n = contacts_.normal[contact];
+  const auto t = tangents(n);
+  Vec<Dim> impulse = dp[0] * n;
+  for (int k = 1; k < Dim; ++k) impulse += dp[k] * t[k - 1];
+  particles_.velocity[a] -= inverse_a * impulse;
+  particles_.velocity[b] += inverse_b * impulse;
+  const Spin<Dim> turn = particles_.inertia_ratio * turning(n, impulse);
+  particles_.spin[a] -= inverse_a * turn;
+  particles_.spin[b] -= inverse_b * turn;
+}
+
+template <int Dim>
+void RigidContactSystem<Dim>::relax_contact(int contact, Vec<Dim>& impulse, double friction,
+                                            double relaxation, Violation& violation) {
+  const Vec<Dim> u = relative_velocity(contact);
+  const double gain = relaxation * contacts_.inverse_delassus[contact];
+  Vec<Dim> p;
+  p[0] = std::max(0.0, impulse[0] - gain * u[0]);  // p_n <- max(0, p_n - omega u_n / W_nn)
+  double length = 0;
+  for (int k = 1; k < Dim; ++k) {
+    p[k] = impulse[k] - gain / (1 + particles_.inertia_ratio) * u[k];  // p_t <- p_t - omega u_t / W_tt
+    length += p[k] * p[k];
+  }
+  length = std::sqrt(length);
+  const double limit = friction * p[0];  // |p_t| <= mu p_n
+  if (length > limit)
+    for (int k = 1; k < Dim; ++k) p[k] *= limit / length;
+  const Vec<Dim> dp = p - impulse;
+  impulse = p;
+  apply_impulse(contact, dp);
+  double square = dp[0] * dp[0];
+  for (int k = 1; k < Dim; ++k)
+    square += (1 + particles_.inertia_ratio) * (1 + particles_.inertia_ratio) * dp[k] * dp[k];
+  violation.add(square / (gain * gain), p[0] > 0);
+}
+
+template <int Dim>
+Violation RigidContactSystem<Dim>::sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
+                                         const SolverOptions& options) {
+  Violation violation;
+  for (const ContactBatch& batch : contacts_.batches) {
+    int c = batch.begin;
+    if constexpr (Dim == 2)
+      c = sweep_lanes({particles_, contacts_, offset_, impulse, friction, options.relaxation}, batch,
+                      violation);
+    for (; c < batch.end; ++c) relax_contact(c, impulse[c], friction[c], options.relaxation, violation);
+  }
+  return violation;
+}
+
+template <int Dim>
+void apply_impulses(RigidContactSystem<Dim>& system, std::span<const Vec<Dim>> impulse) {
+  for (int c = 0; c < system.size(); ++c)
+    if (impulse[c][0] != 0) system.apply_impulse(c, impulse[c]);
+}
+
+template void signorini_offset<2>(const RigidContacts<2>&, std::span<const Vec<2>>, const ContactLaw&, double,
+                                  std::vector<double>&);
+template void signorini_offset<3>(const RigidContacts<3>&, std::span<const Vec<3>>, const ContactLaw&, double,
+                                  std::vector<double>&);
+template class RigidContactSystem<2>;
+template class RigidContactSystem<3>;
+template void apply_impulses<2>(RigidContactSystem<2>&, std::span<const Vec<2>>);
+template void apply_impulses<3>(RigidContactSystem<3>&, std::span<const Vec<3>>);
+
+}  // namespace softgrain

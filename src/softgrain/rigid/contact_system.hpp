@@ -1,0 +1,72 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "softgrain/contact/contact_system.hpp"
+#include "softgrain/contact/residual.hpp"
+#include "softgrain/contact/solver_options.hpp"
+#include "softgrain/rigid/contacts.hpp"
+#include "softgrain/rigid/particles.hpp"
+
+namespace softgrain {
+
+/// When a contact is active, which decides where restitution acts (trajectories depend on it).
+enum class Activation {
+  anticipated,  ///< always: u_n + max(g, 0)/dt >= 0 lets a gap close but not cross; restitution needs g <= 0
+  closed_at_mid_step,  ///< only if g <= 0 at mid-step: Newton's u_n + e u_n^- >= 0 (Moreau; Siconos, LMGC90)
+};
+
+/// The choices of the contact law beside friction.
+struct ContactLaw {
+  double restitution = 0;  ///< e_n in [0, 1], Newton's
+  double push_out = 0.1;   ///< beta in [0, 1]: share of an existing overlap that a step removes
+  Activation activation = Activation::anticipated;
+};
+
+/// Unit tangents of a contact with normal n: t = e_z x n in the plane; two in space.
+inline std::array<Vec<2>, 1> tangents(const Vec<2>& n) { return {perpendicular(n)}; }
+std::array<Vec<3>, 2> tangents(const Vec<3>& n);
+
+/// q_n - u_n,free of each contact [m/s] (theory (6)-(8)): max(g, 0)/dt + beta min(g, 0)/dt, and e u_n^- where
+/// g <= 0; very large where the contact is inactive. `velocity_start` (bodies) [m/s] is that of the start of
+/// the step: u_n^- comes from it.
+template <int Dim>
+void signorini_offset(const RigidContacts<Dim>& contacts, std::span<const Vec<Dim>> velocity_start,
+                      const ContactLaw& law, double dt, std::vector<double>& offset);
+
+/// Rigid disks and spheres as a ContactSystem: the bodies' velocities carry all impulses, W is never formed.
+///
+/// With spins s = R omega and kappa = m R^2/I (theory (12)):
+///   u = (v_b - v_a) - (s_a + s_b) x n,   W_nn = 1/m_a + 1/m_b,   W_tt = (1 + kappa) W_nn,   W_nt = 0.
+template <int Dim>
+class RigidContactSystem {
+ public:
+  /// Keeps references; `offset` (m) [m/s] as from signorini_offset.
+  RigidContactSystem(RigidParticles<Dim>& particles, const RigidContacts<Dim>& contacts,
+                     std::span<const double> offset)
+      : particles_(particles), contacts_(contacts), offset_(offset) {}
+
+  int size() const { return contacts_.size(); }
+  Mat<Dim> delassus_block(int contact) const;
+  Vec<Dim> relative_velocity(int contact) const;
+  void apply_impulse(int contact, const Vec<Dim>& dp);
+
+  /// One sweep of NLGS over all batches, four contacts at once in the plane; the same law as the plain sweep.
+  Violation sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
+                  const SolverOptions& options);
+
+ private:
+  /// One contact of the sweep, for those that do not fill four lanes, and for spheres.
+  void relax_contact(int contact, Vec<Dim>& impulse, double friction, double relaxation,
+                     Violation& violation);
+
+  RigidParticles<Dim>& particles_;
+  const RigidContacts<Dim>& contacts_;
+  std::span<const double> offset_;
+};
+
+/// v_free += M^-1 H p for the impulses kept from the last step (warm start).
+template <int Dim>
+void apply_impulses(RigidContactSystem<Dim>& system, std::span<const Vec<Dim>> impulse);
+
+}  // namespace softgrain

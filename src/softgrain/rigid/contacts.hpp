@@ -1,0 +1,34 @@
+#pragma once
+#include <vector>
+
+#include "softgrain/math/vec.hpp"
+
+namespace softgrain {
+
+/// Contacts begin .. end - 1 that share no particle: they may be solved in any order.
+struct ContactBatch {
+  int begin = 0, end = 0;
+  bool frictional = false;
+};
+
+/// Candidate contacts, in the order of the sweep: all pairs that could touch before the next rebuild. Open
+/// ones stay in the arrays with impulse 0, so that warm start and colours survive from step to step
+/// (docs/decisions/0005).
+///
+/// Local axes: the normal n from a to b, then the tangents of `tangents(n)`.
+template <int Dim>
+struct RigidContacts {
+  std::vector<int> body_a, body_b;  ///< (m) a < b: particles, then walls (RigidParticles); a is never a wall
+  std::vector<double> inverse_mass_a;    ///< (m) [1/kg]
+  std::vector<double> inverse_mass_b;    ///< (m) [1/kg], 0 for walls
+  std::vector<double> inverse_delassus;  ///< (m) 1 / W_nn [kg]
+  std::vector<double> friction;          ///< (m) mu
+  std::vector<Vec<Dim>> normal;          ///< (m) unit, from a to b
+  std::vector<double> gap;               ///< (m) [m], open > 0
+  std::vector<Vec<Dim>> impulse;         ///< (m) (p_n, p_t) [N s/m in 2D]
+  std::vector<ContactBatch> batches;
+
+  int size() const { return static_cast<int>(body_a.size()); }
+};
+
+}  // namespace softgrain

@@ -1,0 +1,24 @@
+#pragma once
+#include <span>
+
+#include "softgrain/contact/residual.hpp"
+#include "softgrain/rigid/contacts.hpp"
+#include "softgrain/rigid/particles.hpp"
+
+namespace softgrain {
+
+/// What a sweep works on: views of the bodies and the contacts.
+struct SweepData {
+  RigidParticles<2>& particles;
+  const RigidContacts<2>& contacts;
+  std::span<const double> offset;    ///< (m) [m/s] as from signorini_offset
+  std::span<Vec<2>> impulse;         ///< (m) [N s/m]
+  std::span<const double> friction;  ///< (m)
+  double relaxation;                 ///< omega
+};
+
+/// Relaxes the contacts of a batch four at once, as RigidContactSystem::relax_contact does one by one, and
+/// adds to the violation. Returns the first contact that is left over (fewer than four are).
+int sweep_lanes(const SweepData& data, const ContactBatch& batch, Violation& violation);
+
+}  // namespace softgrain

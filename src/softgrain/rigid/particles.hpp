@@ -1,0 +1,55 @@
+#pragma once
+#include <cassert>
+#include <vector>
+
+#include "softgrain/geometry/wall.hpp"
+#include "softgrain/math/vec.hpp"
+
+namespace softgrain {
+
+/// Components of a rotation: 1 in the plane, 3 in space.
+template <int Dim>
+inline constexpr int spin_size = Dim == 2 ? 1 : 3;
+
+template <int Dim>
+using Spin = Vec<spin_size<Dim>>;
+
+/// Rigid disks (Dim = 2, per metre of depth) or spheres (Dim = 3), then the walls, in one array of bodies.
+///
+/// Bodies 0 .. size() - 1 are particles; body size() + w is wall w, of infinite mass (inverse_mass = 0), so
+/// that a contact needs no question about what it touches. The spin is s = R omega [m/s], the speed of the
+/// surface: with it no radius enters the contact equations (theory (12)).
+template <int Dim>
+struct RigidParticles {
+  std::vector<Vec<Dim>> position;               ///< (n) [m]
+  std::vector<double> radius;                   ///< (n) [m]
+  std::vector<double> mass;                     ///< (n) [kg/m in 2D, kg in 3D]
+  std::vector<int> grain;                       ///< (n) the grain that a particle belongs to
+  std::vector<Vec<Dim>> velocity;               ///< (n + walls) [m/s]
+  std::vector<Spin<Dim>> spin;                  ///< (n + walls) s = R omega [m/s]
+  std::vector<double> inverse_mass;             ///< (n + walls) [1/kg], 0 for walls
+  double inertia_ratio = Dim == 2 ? 2.0 : 2.5;  ///< kappa = m R^2 / I: 2 for disks, 5/2 for spheres
+  std::vector<Wall<Dim>> walls;
+
+  int size() const { return static_cast<int>(position.size()); }
+  int wall_body(int wall) const { return size() + wall; }
+};
+
+/// Particles at rest with the masses given. Raises UsageError for radii or masses that are not positive.
+template <int Dim>
+RigidParticles<Dim> rigid_particles(std::vector<Vec<Dim>> position, std::vector<double> radius,
+                                    std::vector<double> mass, std::vector<Wall<Dim>> walls);
+
+/// x += dt v, for particles and walls.
+template <int Dim>
+void drift(RigidParticles<Dim>& particles, double dt);
+
+/// Gives a wall another velocity [m/s].
+template <int Dim>
+void set_wall_velocity(RigidParticles<Dim>& particles, int wall, const Vec<Dim>& velocity);
+
+/// sum 1/2 m v^2 + 1/2 I omega^2 [J/m in 2D, J in 3D].
+template <int Dim>
+double kinetic_energy(const RigidParticles<Dim>& particles);
+
+}  // namespace softgrain

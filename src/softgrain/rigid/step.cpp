@@ -1,0 +1,136 @@
+#include "softgrain/rigid/step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "softgrain/contact/nlgs.hpp"
+#include "softgrain/core/error.hpp"
+
+namespace softgrain {
+
+template <int Dim>
+RigidDynamics<Dim>::RigidDynamics(RigidParticles<Dim> bodies, FrictionRule friction,
+                                  RigidStepOptions step_options, double skin)
+    : particles(std::move(bodies)), options(step_options), friction_(std::move(friction)) {
+  const ContactLaw& law = options.law;
+  require(law.restitution >= 0 && law.restitution <= 1, "restitution must be in [0, 1], got {}",
+          law.restitution);
+  require(law.push_out >= 0 && law.push_out <= 1, "push-out must be in [0, 1], got {}", law.push_out);
+  require(law.restitution == 0 || law.activation == Activation::closed_at_mid_step,
+          "restitution {} needs contacts that are active only when closed at mid-step: anticipation would "
+          "stop the "
+          "particles before they touch",
+          law.restitution);
+  require(skin > 0, "skin must be > 0, got {} m", skin);
+  reference.skin = skin;
+  if (particles.size() > 0)
+    mean_radius_ = std::accumulate(particles.radius.begin(), particles.radius.end(), 0.0) / particles.size();
+}
+
+template <int Dim>
+StepReport RigidDynamics<Dim>::step(const ForceField<Dim>& field, double dt) {
+  drift(particles, dt / 2);  // x_m = x + dt/2 v
+  update_contacts();         // gaps and frames at x_m
+  velocity_start_ = particles.velocity;
+  spin_start_ = particles.spin;
+  kick(field, dt);                        // v_free = v + dt M^-1 F(x_m)
+  const SolverReport solver = solve(dt);  // v+ = v_free + M^-1 H p,  0 <= u_n + q_n _|_ p_n >= 0
+  account_work(dt);
+  drift(particles, dt / 2);  // x = x_m + dt/2 v+
+  return report(solver);
+}
+
+template <int Dim>
+void RigidDynamics<Dim>::update_contacts() {
+  if (needs_rebuild(reference, particles)) {
+    set_reference(reference, particles);
+    rebuild_contacts();
+  }
+  detect_contacts(particles, contacts);
+}
+
+template <int Dim>
+void RigidDynamics<Dim>::rebuild_contacts() {
+  contacts = candidate_contacts(particles, reference, friction_, contacts);
+}
+
+template <int Dim>
+void RigidDynamics<Dim>::kick(const ForceField<Dim>& field, double dt) {
+  force_.assign(particles.size(), {});
+  field(particles, force_);
+  for (int i = 0; i < particles.size(); ++i)
+    particles.velocity[i] += dt * particles.inverse_mass[i] * force_[i];
+}
+
+template <int Dim>
+SolverReport RigidDynamics<Dim>::solve(double dt) {
+  signorini_offset<Dim>(contacts, velocity_start_, options.law, dt, offset_);
+  if (options.law.activation == Activation::closed_at_mid_step) {
+    for (int c = 0; c < contacts.size(); ++c)
+      if (contacts.gap[c] > 0) contacts.impulse[c] = {};
+  }
+  RigidContactSystem<Dim> system(particles, contacts, offset_);
+  apply_impulses<Dim>(system, contacts.impulse);
+  SolverOptions solver = options.solver;
+  if (solver.velocity_scale == 0) solver.velocity_scale = 2 * mean_radius_ / dt;
+  return solve_nlgs<Dim>(system, contacts.impulse, contacts.friction, solver);
+}
+
+/// With v_m = (v + v+)/2: m/2 (v+^2 - v^2) = v_m . (dt F + H p); a wall's share is p against its own
+/// velocity.
+template <int Dim>
+void RigidDynamics<Dim>::account_work(double dt) {
+  work = {};
+  double total = 0;
+  for (int i = 0; i < particles.size(); ++i) {
+    const Vec<Dim> middle = 0.5 * (velocity_start_[i] + particles.velocity[i]);
+    const Spin<Dim> spin_middle = 0.5 * (spin_start_[i] + particles.spin[i]);
+    work.force += dt * dot(force_[i], middle);
+    total +=
+        particles.mass[i] * (dot(middle, particles.velocity[i] - velocity_start_[i]) +
+                             dot(spin_middle, particles.spin[i] - spin_start_[i]) / particles.inertia_ratio);
+    if (!std::isfinite(total))
+      throw NumericalError(
+          fmt::format("the velocity of particle {} is not finite; use a smaller time step", i));
+  }
+  for (int w = 0; w < static_cast<int>(particles.walls.size()); ++w)
+    work.wall -= dot(wall_impulse(w), particles.walls[w].velocity);
+  work.contact = total - work.force - work.wall;
+}
+
+template <int Dim>
+Vec<Dim> RigidDynamics<Dim>::wall_impulse(int wall) const {
+  Vec<Dim> sum;
+  const int body = particles.wall_body(wall);
+  for (int c = 0; c < contacts.size(); ++c) {
+    if (contacts.body_b[c] != body) continue;
+    sum += contacts.impulse[c][0] * contacts.normal[c];
+    const auto t = tangents(contacts.normal[c]);
+    for (int k = 1; k < Dim; ++k) sum += contacts.impulse[c][k] * t[k - 1];
+  }
+  return sum;
+}
+
+template <int Dim>
+StepReport RigidDynamics<Dim>::report(const SolverReport& solver) const {
+  StepReport report{.sweeps = solver.sweeps,
+                    .residual_mean = solver.residual_mean,
+                    .residual_max = solver.residual_max,
+                    .converged = solver.converged};
+  double overlap = 0;
+  for (int c = 0; c < contacts.size(); ++c) {
+    if (!(contacts.impulse[c][0] > 0)) continue;
+    ++report.contacts;
+    const double depth = std::max(0.0, -contacts.gap[c]) / mean_radius_;
+    overlap += depth;
+    report.overlap_max = std::max(report.overlap_max, depth);
+  }
+  if (report.contacts > 0) report.overlap_mean = overlap / report.contacts;
+  return report;
+}
+
+template class RigidDynamics<2>;
+template class RigidDynamics<3>;
+
+}  // namespace softgrain

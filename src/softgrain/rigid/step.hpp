@@ -1,0 +1,70 @@
+#pragma once
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "softgrain/contact/solver_options.hpp"
+#include "softgrain/contact/step_report.hpp"
+#include "softgrain/rigid/contact_system.hpp"
+#include "softgrain/rigid/contacts.hpp"
+#include "softgrain/rigid/neighbours.hpp"
+#include "softgrain/rigid/particles.hpp"
+
+namespace softgrain {
+
+/// Adds the forces on the particles at their present positions [N/m in 2D, N in 3D].
+template <int Dim>
+using ForceField = std::function<void(const RigidParticles<Dim>&, std::span<Vec<Dim>> force)>;
+
+struct RigidStepOptions {
+  SolverOptions
+      solver;  ///< velocity_scale 0: 2 <R> / dt, so that the tolerance is penetration per step over diameter
+  ContactLaw law;
+};
+
+/// Work done in one step by each cause [J/m in 2D]; their sum is the change of kinetic energy, to round-off.
+struct StepWork {
+  double force = 0;    ///< by the force field
+  double contact = 0;  ///< by contact impulses in the frame of the contact: minus the energy dissipated there
+  double wall = 0;     ///< by moving walls
+};
+
+/// Rigid particles under contact dynamics: state, lists and scratch of the step. `friction` and the force
+/// field are data, so that one step serves gravity, attraction and none.
+template <int Dim>
+class RigidDynamics {
+ public:
+  /// skin [m] of the lists of pairs. Raises UsageError for options out of range.
+  RigidDynamics(RigidParticles<Dim> particles, FrictionRule friction, RigidStepOptions options, double skin);
+
+  /// One step of Moreau's mid-point scheme (theory (2)-(4)). Raises NumericalError if a velocity is not
+  /// finite.
+  StepReport step(const ForceField<Dim>& field, double dt);
+
+  RigidParticles<Dim> particles;
+  RigidContacts<Dim> contacts;
+  NeighbourReference<Dim> reference;  ///< of the list of contacts; force fields may share it
+  RigidStepOptions options;
+  StepWork work;  ///< of the last step
+
+  /// Impulse of the particles on wall w in the last step, [N s/m in 2D].
+  Vec<Dim> wall_impulse(int wall) const;
+
+  /// Makes the list of contacts again from the reference as it is (restart); impulses by (a, b).
+  void rebuild_contacts();
+
+ private:
+  void update_contacts();
+  void kick(const ForceField<Dim>& field, double dt);
+  SolverReport solve(double dt);
+  void account_work(double dt);
+  StepReport report(const SolverReport& solver) const;
+
+  FrictionRule friction_;
+  std::vector<Vec<Dim>> force_, velocity_start_;
+  std::vector<Spin<Dim>> spin_start_;
+  std::vector<double> offset_;
+  double mean_radius_ = 0;
+};
+
+}  // namespace softgrain
