@@ -1,12 +1,10 @@
 #include "softgrain/io/hdf5_file.hpp"
 
-#include <fcntl.h>
 #include <hdf5.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <utility>
 
 #include "softgrain/core/error.hpp"
@@ -40,6 +38,9 @@ Status checked(Status status, const std::string& file, std::string_view what) {
   return status;
 }
 
+/// The library takes two open files in memory for the same when their names are equal.
+std::string unique_name(const void* owner) { return fmt::format("{}", owner); }
+
 /// The library would print its own stack of errors; we raise one sentence instead.
 void silence_library() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
@@ -53,15 +54,44 @@ std::string hdf5_version() {
   return fmt::format("{}.{}.{}", major, minor, release);
 }
 
-Hdf5Writer::Hdf5Writer(std::string name)
-    : name_(std::move(name)), memory_(::memfd_create("snapshot", MFD_CLOEXEC)) {
+namespace {
+
+/// Memory of a file in memory, as the library wants it; when the file closes its bytes go to the string
+/// `bytes`, as many as the string is long. (H5Fget_file_image gives them too, but spoils the superblock's
+/// checksum.)
+H5FD_file_image_callbacks_t keep_image_at_close(std::string& bytes) {
+  using Operation = H5FD_file_image_op_t;
+  H5FD_file_image_callbacks_t callbacks{};
+  callbacks.image_malloc = [](std::size_t size, Operation, void*) { return std::malloc(size); };
+  callbacks.image_realloc = [](void* at, std::size_t size, Operation, void*) {
+    return std::realloc(at, size);
+  };
+  callbacks.image_memcpy = [](void* to, const void* from, std::size_t size, Operation, void*) {
+    return std::memcpy(to, from, size);
+  };
+  callbacks.image_free = [](void* at, Operation operation, void* user) -> herr_t {
+    auto& kept = *static_cast<std::string*>(user);
+    if (operation == H5FD_FILE_IMAGE_OP_FILE_CLOSE) std::memcpy(kept.data(), at, kept.size());
+    std::free(at);
+    return 0;
+  };
+  callbacks.udata_copy = [](void* user) { return user; };
+  callbacks.udata_free = [](void*) -> herr_t { return 0; };
+  callbacks.udata = &bytes;
+  return callbacks;
+}
+
+}  // namespace
+
+Hdf5Writer::Hdf5Writer(std::string name) : name_(std::move(name)) {
   silence_library();
-  checked(memory_.number(), name_, "no memory for an HDF5 file");
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   checked(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110), name_, "HDF5 older than 1.10");
-  const std::string path = fmt::format("/proc/self/fd/{}", memory_.number());
-  file_ =
-      checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), name_, "cannot create HDF5 file");
+  constexpr auto what = "cannot create an HDF5 file in memory";
+  checked(H5Pset_fapl_core(access, chunk_bytes, false), name_, what);
+  auto callbacks = keep_image_at_close(bytes_);
+  checked(H5Pset_file_image_callbacks(access, &callbacks), name_, what);
+  file_ = checked(H5Fcreate(unique_name(this).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), name_, what);
 }
 
 Hdf5Writer::~Hdf5Writer() {
@@ -125,11 +155,11 @@ void Hdf5Writer::write_attribute(const std::string& name, std::string_view value
 }
 
 std::string Hdf5Writer::finish() {
-  checked(H5Fclose(std::exchange(file_, -1)), name_, "cannot finish HDF5 file");
-  std::string bytes(static_cast<std::size_t>(::lseek(memory_.number(), 0, SEEK_END)), '\0');
-  const auto got = ::pread(memory_.number(), bytes.data(), bytes.size(), 0);
-  if (got != static_cast<ssize_t>(bytes.size())) throw IoError(name_ + ": HDF5 file in memory cut short");
-  return bytes;
+  constexpr auto what = "cannot finish the HDF5 file";
+  checked(H5Fflush(file_, H5F_SCOPE_GLOBAL), name_, what);
+  bytes_.resize(checked(H5Fget_file_image(file_, nullptr, 0), name_, what));  // asks for the size only
+  checked(H5Fclose(std::exchange(file_, -1)), name_, what);
+  return std::move(bytes_);
 }
 
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& file) : name_(file.string()) { open(read_file(file)); }
@@ -145,7 +175,8 @@ void Hdf5Reader::open(std::string_view bytes) {
   std::string image(bytes);  // the library copies it once more, but takes no pointer to const
   checked(H5Pset_file_image(access, image.data(), image.size()), name_, "not an HDF5 file");
   size_ = bytes.size();
-  file_ = checked(H5Fopen("image", H5F_ACC_RDONLY, access), name_, "not an HDF5 file, or a damaged one");
+  file_ = checked(H5Fopen(unique_name(this).c_str(), H5F_ACC_RDONLY, access), name_,
+                  "not an HDF5 file, or a damaged one");
 }
 
 bool Hdf5Reader::has(const std::string& path) const {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "softgrain/experiment/simulation.hpp"
-#include "softgrain/io/file.hpp"
 
 namespace softgrain {
 
@@ -32,7 +31,7 @@ class Hdf5Writer {
 
  private:
   std::string name_;
-  Descriptor memory_;       ///< the file in memory
+  std::string bytes_;
   std::int64_t file_ = -1;  ///< HDF5's identifier
 };
 
