@@ -11,8 +11,8 @@ struct SolverOptions {
   double velocity_scale = 0;  ///< [m/s]; for particles: diameter / time step, so that the violation is the
                               ///< penetration gained in a step over a diameter. 0: rms of u_c - W_cc p_c at
                               ///< the start, which from p = 0 is q.
-  double relaxation = 1;  ///< omega of p <- p + omega (p_new - p), in (0, 2) without friction
-  int check_every = 1;    ///< sweeps between two looks at the residual
+  double relaxation = 1;      ///< omega of p <- p + omega (p_new - p), in (0, 2) without friction
+  int check_every = 1;        ///< sweeps between two looks at the residual
 };
 
 /// What a contact algorithm reached. Not converged is a value, not an exception.
