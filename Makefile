@@ -1,0 +1,38 @@
+# Short names for the commands of everyday work; each recipe also works typed by hand.
+.DEFAULT_GOAL := help
+.PHONY: help demo test check bench clean
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-6s %s\n", $$1, $$2}' Makefile
+
+demo: ## one soft grain between two plates: builds, simulates, draws (out/demo)
+	@tools/install_dependencies.sh
+	cmake --preset release
+	cmake --build --preset release
+	build/release/softgrain run experiments/diametral_bpm/case.toml -o out/demo --force
+	build/release/softgrain plot out/demo
+	@echo "The pictures lie in out/demo, the numbers in out/demo/series.csv"
+
+test: ## builds with warnings as errors and runs all tests
+	@tools/install_dependencies.sh
+	cmake --preset dev
+	cmake --build --preset dev
+	ctest --preset dev
+
+check: ## format, layers, self-contained headers, clang-tidy
+	@tools/install_dependencies.sh --with checks
+	cmake --preset dev
+	tools/check_format
+	tools/check_layers --self-test
+	tools/check_layers
+	tools/check_headers
+	tools/check_tidy
+
+bench: ## measures the speed, ours and the peers'
+	@tools/install_dependencies.sh --with bench
+	cmake --preset bench
+	cmake --build --preset bench
+	cmake --build --preset bench --target run_benchmarks
+
+clean: ## removes build/ and out/
+	rm -rf build out
