@@ -1,5 +1,6 @@
 // The command line program: parses the arguments, calls one verb, turns its outcome into an exit code.
 #include <fmt/core.h>
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <exception>
@@ -8,6 +9,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/version.hpp"
+#include "softgrain/io/case_file.hpp"
 #include "softgrain/io/suggest.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
@@ -59,15 +61,17 @@ std::vector<std::string> option_names(CLI::App& verb) {
 /// What is wrong with the command line, in one sentence, with the nearest word that would have been right.
 std::string explain(CLI::App& app, const CLI::ParseError& error) {
   CLI::App& verb = chosen_verb(app);
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return error.what();
-  const auto extras = verb.remaining().empty() ? app.remaining() : verb.remaining();
-  if (extras.empty()) return error.what();
-  const std::string& word = extras.front();
+  const bool has_verb = &verb != &app;
+  const auto unexpected = verb.remaining();
+  if (unexpected.empty())
+    return has_verb ? error.what()
+                    : fmt::format("no verb given; one of: {}", fmt::join(verb_names(app), ", "));
+  const std::string& word = unexpected.front();
   if (word.starts_with('-')) {
     const std::string name = word.substr(0, word.find('='));
     return fmt::format("unknown option '{}'{}", name, did_you_mean(name, option_names(verb)));
   }
-  if (&verb == &app) return fmt::format("unknown verb '{}'{}", word, did_you_mean(word, verb_names(app)));
+  if (!has_verb) return fmt::format("unknown verb '{}'{}", word, did_you_mean(word, verb_names(app)));
   return fmt::format("unexpected argument '{}'", word);
 }
 
@@ -108,6 +112,9 @@ int main(int argc, char** argv) {
     return run_program(argc, argv);
   } catch (const ExitCode& exit) {
     return exit.code;
+  } catch (const CaseFileError& error) {
+    print_error(error.what());
+    return usage;
   } catch (const UsageError& error) {
     print_error(fmt::format("error: {}", error.what()));
     return usage;

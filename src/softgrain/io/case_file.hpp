@@ -1,0 +1,25 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/experiment/case.hpp"
+
+namespace softgrain {
+
+/// A case that cannot be run. what() holds every error at once, each as `file:line:column: error: ...` with
+/// its line of the file, and the count; it is printed as it is.
+struct CaseFileError : UsageError {
+  using UsageError::UsageError;
+};
+
+/// Reads a case file (TOML; keys, units and ranges in io/schema.cpp) and then the overrides `key=value`, in
+/// which a value is TOML or a bare quantity: `time.step=0.05 us`. What is not given keeps its default. Raises
+/// UsageError when the file cannot be read, and CaseFileError with all errors sorted by line and column.
+Case read_case(const std::string& path, const std::vector<std::string>& sets = {});
+
+/// The same from text; `name` stands for the file in messages.
+Case parse_case(std::string_view text, const std::string& name, const std::vector<std::string>& sets = {});
+
+}  // namespace softgrain
