@@ -1,6 +1,5 @@
 #include "softgrain/io/toml_document.hpp"
 
-#include <optional>
 #include <stdexcept>
 
 // The one door to toml++. Version 3.3.0 reaches undefined behaviour on some keys that are not ASCII and an
@@ -99,6 +98,15 @@ TomlValue::Table convert(const toml::table& table) {
 }
 
 }  // namespace
+
+bool is_printable(std::string_view line) {
+  while (!line.empty()) {
+    const std::size_t length = line.front() == '\t' ? 1 : printable_length(line);
+    if (length == 0 || line.size() > longest_line) return false;
+    line.remove_prefix(length);
+  }
+  return true;
+}
 
 TomlValue::Table parse_toml(std::string_view text) {
   check_text(text);

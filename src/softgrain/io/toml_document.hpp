@@ -40,6 +40,9 @@ struct TomlError : UsageError {
   TextPosition at;
 };
 
+/// Whether a line is UTF-8 without control characters (tabs are fine), so that it can be shown on a terminal.
+bool is_printable(std::string_view line);
+
 /// Reads TOML 1.0. Safe on any bytes: raises TomlError on text that is not UTF-8, on control characters, on
 /// more than 1 MB, lines of more than 1000 bytes and arrays nested more than 8 deep.
 TomlValue::Table parse_toml(std::string_view text);

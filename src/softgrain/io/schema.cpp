@@ -1,0 +1,166 @@
+#include "softgrain/io/schema.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgrain {
+namespace {
+
+Allowed anything() { return {}; }
+Allowed positive() { return {.range = {.low = 0, .without_low = true}}; }
+Allowed at_least(double low) { return {.range = {.low = low}}; }
+Allowed from_to(double low, double high) { return {.range = {.low = low, .high = high}}; }
+Allowed between(double low, double high) {
+  return {.range = {.low = low, .high = high, .without_low = true, .without_high = true}};
+}
+Allowed one_of(std::vector<std::string> words) { return {.words = std::move(words)}; }
+
+// clang-format off
+// A key's name and its place in Case from the same words.
+#define KEY(member, ...) Key{#member, +[](Case& c) -> auto& { return c.member; }, __VA_ARGS__}
+
+std::vector<Key> all_keys() {
+  return {
+      KEY(experiment.loading, "", one_of({"diametral"}),
+          "the loading path; diametral: one grain between two plates, the top one moves"),
+      KEY(experiment.model, "", one_of({"bpm"}),
+          "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other"),
+
+      KEY(grain.radius, "mm", positive(), "radius R of the grain"),
+      KEY(grain.density, "kg/m^3", positive(), "density rho; the grain weighs rho pi R^2 per metre of depth"),
+
+      KEY(bpm.primaries, "", from_to(7, 1e6), "number of primary particles in a grain"),
+      KEY(bpm.size_ratio, "", from_to(1, 10), "largest over smallest primary diameter"),
+      KEY(bpm.attraction, "N/m", at_least(0),
+          "attraction F0 between touching primaries of one grain, per metre of depth"),
+      KEY(bpm.exponent, "", at_least(1),
+          "exponent gamma of F0 (a0/r)^gamma, r the distance of the centres, a0 the sum of the radii"),
+
+      KEY(contact.friction, "", at_least(0), "coefficient of friction mu between the primaries of a grain"),
+      KEY(contact.wall_friction, "", at_least(0), "coefficient of friction mu against walls"),
+      KEY(contact.restitution, "", from_to(0, 1), "Newton's coefficient of restitution e_n"),
+      KEY(contact.activation, "", one_of({"anticipated", "closed_at_mid_step"}),
+          "when a contact is active: when it may close within the step, or when it is closed at mid-step"),
+      KEY(contact.push_out, "", from_to(0, 1), "share beta of an existing overlap that is removed in a step"),
+
+      KEY(solver.min_sweeps, "", at_least(1), "sweeps of the contact solver in every step"),
+      KEY(solver.max_sweeps, "", at_least(1), "sweeps after which a step counts as not converged"),
+      KEY(solver.tolerance, "", positive(),
+          "converged: mean penetration gained in a step over the mean primary diameter is below this"),
+      KEY(solver.relaxation, "", between(0, 2), "over-relaxation omega of a sweep; 1 is plain Gauss-Seidel"),
+
+      KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top plate"),
+      KEY(loading.max_strain, "", between(0, 3),
+          "grain strain eps = -ln(1 - d/R) at the end, d half the travel of the plate"),
+      KEY(loading.unload_at, "", positive(),
+          "ascending strains at which the plate turns back once; [] for none"),
+      KEY(loading.unload_by, "", positive(), "strain given back before loading again"),
+
+      KEY(time.step, "us", positive(), "time step dt"),
+
+      KEY(sample.seed, "", at_least(0),
+          "seed of the random numbers; another seed is another sample of the same grain"),
+
+      KEY(output.samples, "", from_to(1, 1e6), "rows of series.csv, evenly over the run"),
+      KEY(output.snapshots, "", from_to(0, 1e5), "restart points, evenly over the run"),
+      KEY(output.vtk, "", anything(), "write .vtp files for ParaView beside the snapshots"),
+  };
+}
+
+std::vector<TableOfKeys> all_tables() {
+  return {
+      {"experiment", "What is done, and with which model of a grain."},
+      {"grain", "The soft grain."},
+      {"bpm", "Bonded particle model: the primary particles of a grain."},
+      {"contact", "Laws of contact."},
+      {"solver", "The contact solver: nonlinear Gauss-Seidel."},
+      {"loading", "What the plates do."},
+      {"time", "Time stepping."},
+      {"sample", "The initial state."},
+      {"output", "What is written."},
+  };
+}
+// clang-format on
+#undef KEY
+
+std::string unloading_not_ascending(const Case& c) {
+  const auto& strains = c.loading.unload_at;
+  const auto turn = std::adjacent_find(strains.begin(), strains.end(), std::greater_equal<>{});
+  if (turn == strains.end()) return "";
+  return fmt::format("loading.unload_at must be ascending: {} stands before {}", *turn, *(turn + 1));
+}
+
+std::string unloading_after_the_end(const Case& c) {
+  const auto& strains = c.loading.unload_at;
+  const auto late =
+      std::find_if(strains.begin(), strains.end(), [&](double eps) { return eps >= c.loading.max_strain; });
+  if (late == strains.end()) return "";
+  return fmt::format("loading.unload_at must be below loading.max_strain: {} is not below {}", *late,
+                     c.loading.max_strain);
+}
+
+std::string unloading_below_zero(const Case& c) {
+  const auto& strains = c.loading.unload_at;
+  if (strains.empty() || c.loading.unload_by < strains.front()) return "";
+  return fmt::format("loading.unload_by must be below the first of loading.unload_at: {} is not below {}",
+                     c.loading.unload_by, strains.front());
+}
+
+std::string sweeps_reversed(const Case& c) {
+  if (c.solver.min_sweeps <= c.solver.max_sweeps) return "";
+  return fmt::format("solver.min_sweeps must not be above solver.max_sweeps: {} is above {}",
+                     c.solver.min_sweeps, c.solver.max_sweeps);
+}
+
+}  // namespace
+
+bool Range::contains(double value) const {
+  const bool above = without_low ? value > low : value >= low;
+  const bool below = without_high ? value < high : value <= high;
+  return above && below;
+}
+
+std::string Range::text() const {
+  const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
+  if (has_low && has_high)
+    return fmt::format("{}{}, {}{}", without_low ? '(' : '[', low, high, without_high ? ')' : ']');
+  if (has_low) return fmt::format("{} {}", without_low ? ">" : ">=", low);
+  if (has_high) return fmt::format("{} {}", without_high ? "<" : "<=", high);
+  return "";
+}
+
+const std::vector<Key>& case_keys() {
+  static const std::vector<Key> keys = all_keys();
+  return keys;
+}
+
+const std::vector<TableOfKeys>& case_tables() {
+  static const std::vector<TableOfKeys> tables = all_tables();
+  return tables;
+}
+
+const std::vector<Relation>& case_relations() {
+  static const std::vector<Relation> relations{
+      {{"loading.unload_at"}, unloading_not_ascending},
+      {{"loading.unload_at", "loading.max_strain"}, unloading_after_the_end},
+      {{"loading.unload_by", "loading.unload_at"}, unloading_below_zero},
+      {{"solver.min_sweeps", "solver.max_sweeps"}, sweeps_reversed},
+  };
+  return relations;
+}
+
+const Key* find_key(std::string_view name) {
+  for (const Key& key : case_keys())
+    if (key.name == name) return &key;
+  return nullptr;
+}
+
+std::vector<std::string> key_names() {
+  std::vector<std::string> names;
+  for (const Key& key : case_keys()) names.push_back(key.name);
+  return names;
+}
+
+}  // namespace softgrain

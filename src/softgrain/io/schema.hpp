@@ -1,0 +1,70 @@
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "softgrain/experiment/case.hpp"
+
+namespace softgrain {
+
+/// Numbers that a key takes, in SI. A list's range holds for each of its numbers.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool without_low = false;   ///< the lower bound itself is excluded
+  bool without_high = false;  ///< the upper bound itself is excluded
+
+  bool contains(double value) const;
+  std::string text() const;  ///< "> 0", ">= 1", "[0, 1]", "(0, 2)", "" for all
+};
+
+/// What a key takes: a range of numbers, or some words.
+struct Allowed {
+  Range range = {};
+  std::vector<std::string> words = {};
+};
+
+/// Where a key's value lies in a Case; the type it takes follows from it.
+template <class T>
+using MemberOf = T& (*)(Case&);
+using Member = std::variant<MemberOf<bool>, MemberOf<int>, MemberOf<std::int64_t>, MemberOf<double>,
+                            MemberOf<std::string>, MemberOf<std::vector<double>>>;
+
+/// One key of a case file. Its default is the value in Case{}.
+struct Key {
+  std::string name;  ///< with its table: "loading.wall_velocity"
+  Member member;
+  std::string_view
+      unit;  ///< in which people write it: "mm"; fixes the dimension; "" for plain numbers and words
+  Allowed allowed;
+  std::string_view text;
+
+  std::string table() const { return name.substr(0, name.find('.')); }
+  std::string short_name() const { return name.substr(name.find('.') + 1); }
+};
+
+struct TableOfKeys {
+  std::string name;
+  std::string_view text;
+};
+
+/// Keys that must fit together, checked once each of them is valid alone.
+struct Relation {
+  std::vector<std::string> keys;
+  std::string (*broken)(const Case&);  ///< what is wrong, or ""
+};
+
+/// The one list of all keys: parser, checks, JSON Schema, reference page, template and resolved case follow
+/// it.
+const std::vector<Key>& case_keys();
+const std::vector<TableOfKeys>& case_tables();
+const std::vector<Relation>& case_relations();
+
+/// nullptr when there is no key of this full name.
+const Key* find_key(std::string_view name);
+std::vector<std::string> key_names();
+
+}  // namespace softgrain
