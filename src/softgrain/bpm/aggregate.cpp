@@ -13,8 +13,8 @@
 namespace softgrain {
 namespace {
 
-// Units of the preparation: mean primary diameter 1, F0 = 1, mass of a disk of diameter 1 = 1. A pair then vibrates with the
-// period 2 pi / sqrt(2 gamma) = 1.7 for gamma = 7.
+// Units of the preparation: mean primary diameter 1, F0 = 1, mass of a disk of diameter 1 = 1. A pair then
+// vibrates with the period 2 pi / sqrt(2 gamma) = 1.7 for gamma = 7.
 constexpr double time_step = 0.05;
 constexpr double bond_pressure = 1;  // F0 / <a0>
 constexpr double dense_fraction = 0.82;
@@ -32,12 +32,14 @@ RigidParticles<2> loose_disks(int count, const AggregateOptions& options) {
   for (int row = -half; row <= half; ++row)
     for (int column = -half; column <= half; ++column)
       sites.push_back({spacing * (column + 0.5 * (row & 1)), spacing * row * std::sqrt(0.75)});
-  std::stable_sort(sites.begin(), sites.end(), [](const Vec<2>& a, const Vec<2>& b) { return dot(a, a) < dot(b, b); });
+  std::stable_sort(sites.begin(), sites.end(),
+                   [](const Vec<2>& a, const Vec<2>& b) { return dot(a, a) < dot(b, b); });
   sites.resize(count);
 
   std::vector<double> radius, mass;
   for (int i = 0; i < count; ++i) {
-    const double diameter = smallest + (largest - smallest) * random_uniform(options.seed, Stream::diameters, i);
+    const double diameter =
+        smallest + (largest - smallest) * random_uniform(options.seed, Stream::diameters, i);
     for (int k = 0; k < 2; ++k)
       sites[i][k] += (largest * 0.15) * (random_uniform(options.seed, Stream::jitter, 2 * i + k) - 0.5);
     radius.push_back(diameter / 2);
@@ -47,8 +49,10 @@ RigidParticles<2> loose_disks(int count, const AggregateOptions& options) {
 }
 
 RigidDynamics<2> frictionless_dynamics(RigidParticles<2> particles) {
-  const RigidStepOptions options{.solver = {.min_sweeps = 20, .max_sweeps = 20, .relaxation = 1.3}, .law = {}};
-  return RigidDynamics<2>(std::move(particles), [](int, int) { return 0.0; }, options, 0.25);
+  const RigidStepOptions options{.solver = {.min_sweeps = 20, .max_sweeps = 20, .relaxation = 1.3},
+                                 .law = {}};
+  return RigidDynamics<2>(
+      std::move(particles), [](int, int) { return 0.0; }, options, 0.25);
 }
 
 void damp(const RigidParticles<2>& particles, double rate, std::span<Vec<2>> force) {
@@ -77,7 +81,8 @@ RigidParticles<2> contracted(RigidParticles<2> loose) {
 RigidParticles<2> cut_out(const RigidParticles<2>& packing, int count) {
   Vec<2> centre;
   double total = 0;
-  for (int i = 0; i < packing.size(); ++i) centre += packing.mass[i] * packing.position[i], total += packing.mass[i];
+  for (int i = 0; i < packing.size(); ++i)
+    centre += packing.mass[i] * packing.position[i], total += packing.mass[i];
   centre *= 1 / total;
   const auto reach = [&](int i) { return norm(packing.position[i] - centre) + packing.radius[i]; };
   std::vector<int> order(packing.size());
@@ -111,7 +116,8 @@ Aggregate relaxed(RigidParticles<2> cut, double gamma) {
   for (int c = 0; c < dynamics.contacts.size(); ++c)
     if (dynamics.contacts.impulse[c][0] > 0)
       grain.mean_distance +=
-          (grain.radius[dynamics.contacts.body_a[c]] + grain.radius[dynamics.contacts.body_b[c]]) / last.contacts;
+          (grain.radius[dynamics.contacts.body_a[c]] + grain.radius[dynamics.contacts.body_b[c]]) /
+          last.contacts;
   return grain;
 }
 
@@ -136,10 +142,11 @@ void normalise(Aggregate& grain) {
 
 Aggregate prepare_aggregate(const AggregateOptions& options) {
   require(options.primaries >= 7, "a grain needs at least 7 primaries, got {}", options.primaries);
-  require(options.size_ratio >= 1 && options.size_ratio <= 4, "size ratio of primaries must be in [1, 4], got {}",
-          options.size_ratio);
+  require(options.size_ratio >= 1 && options.size_ratio <= 4,
+          "size ratio of primaries must be in [1, 4], got {}", options.size_ratio);
   const int count = static_cast<int>(std::ceil(1.5 * options.primaries));
-  Aggregate grain = relaxed(cut_out(contracted(loose_disks(count, options)), options.primaries), options.gamma);
+  Aggregate grain =
+      relaxed(cut_out(contracted(loose_disks(count, options)), options.primaries), options.gamma);
   normalise(grain);
   return grain;
 }

@@ -8,13 +8,14 @@
 
 namespace softgrain {
 
-/// The attraction between the primary particles of each grain, over a full list of neighbours (each pair twice: no
-/// particle is written by another's row, so the sum's order is fixed).
+/// The attraction between the primary particles of each grain, over a full list of neighbours (each pair
+/// twice: no particle is written by another's row, so the sum's order is fixed).
 class AttractionForces {
  public:
   explicit AttractionForces(const Attraction& law);
 
-  /// Makes the list again if the reference has moved on: all pairs of one grain closer than 2 a0 + skin there.
+  /// Makes the list again if the reference has moved on: all pairs of one grain closer than 2 a0 + skin
+  /// there.
   void update(const RigidParticles<2>& particles, const NeighbourReference<2>& reference);
 
   /// F_i += sum_j F(r_ij) (x_j - x_i)/r_ij  [N/m]

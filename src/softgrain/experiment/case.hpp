@@ -37,7 +37,7 @@ struct Case {
   struct Solver {
     int min_sweeps = 10;
     int max_sweeps = 50;
-    double tolerance = 2e-5;  ///< mean penetration gained in a step over the mean primary diameter
+    double tolerance = 1e-5;  ///< mean penetration gained in a step over the mean primary diameter
     double relaxation = 1.3;  ///< omega
   } solver;
 
@@ -49,7 +49,7 @@ struct Case {
   } loading;
 
   struct Time {
-    double step = 0.5e-6;  ///< dt [s]
+    double step = 0.25e-6;  ///< dt [s]
   } time;
 
   struct Sample {

@@ -9,12 +9,13 @@ namespace softgrain {
 
 double support(std::span<const Vec<2>> position, std::span<const double> radius, const Vec<2>& direction) {
   double reach = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < position.size(); ++i) reach = std::max(reach, dot(position[i], direction) + radius[i]);
+  for (std::size_t i = 0; i < position.size(); ++i)
+    reach = std::max(reach, dot(position[i], direction) + radius[i]);
   return reach;
 }
 
-OutlineShape outline_shape(std::span<const Vec<2>> position, std::span<const double> radius, const Vec<2>& centre,
-                           int directions) {
+OutlineShape outline_shape(std::span<const Vec<2>> position, std::span<const double> radius,
+                           const Vec<2>& centre, int directions) {
   double sum = 0, low = std::numeric_limits<double>::infinity(), high = 0;
   for (int k = 0; k < directions; ++k) {
     const double angle = 2 * std::numbers::pi * k / directions;

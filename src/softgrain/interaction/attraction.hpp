@@ -7,8 +7,8 @@
 
 namespace softgrain {
 
-/// The attraction between primary particles of one grain (the paper's Eq. (1), theory (14)): with r the distance of the
-/// centres, a0 = a1 + a2 and gap g = r - a0,
+/// The attraction between primary particles of one grain (the paper's Eq. (1), theory (14)): with r the
+/// distance of the centres, a0 = a1 + a2 and gap g = r - a0,
 ///   F = F0 (1 + g/a0)^-gamma = F0 (a0/r)^gamma  for r >= a0,   F = F0 under overlap,   0 beyond r = 2 a0.
 /// Positive towards each other.
 struct Attraction {
@@ -47,8 +47,8 @@ struct Attraction {
   }
 
  private:
-  /// a0/r under overlap, else 1, without a square root: 1/sqrt(1 - y), y = max(0, 1 - r^2/a0^2), by two Newton steps from
-  /// 1 + y/2; exact to round-off for overlaps below 1 %, to 1e-8 at 10 %.
+  /// a0/r under overlap, else 1, without a square root: 1/sqrt(1 - y), y = max(0, 1 - r^2/a0^2), by two
+  /// Newton steps from 1 + y/2; exact to round-off for overlaps below 1 %, to 1e-8 at 10 %.
   static Lanes overlap_factor(Lanes ratio_squared) {
     const Lanes x = min(ratio_squared, splat(1));
     Lanes root = 1.5 - 0.5 * x;
