@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "softgrain/io/file.hpp"
+
+namespace softgrain {
+
+/// Where the files of a run lie, for whoever reads or writes them.
+struct RunPaths {
+  std::filesystem::path root;
+
+  std::filesystem::path case_file() const { return root / "case.toml"; }
+  std::filesystem::path run_file() const { return root / "run.json"; }
+  std::filesystem::path series_file() const { return root / "series.csv"; }
+  std::filesystem::path log_file() const { return root / "log.txt"; }
+  std::filesystem::path collection_file() const { return root / "run.pvd"; }
+  std::filesystem::path lock_file() const { return root / ".lock"; }
+  std::filesystem::path snapshot_folder() const { return root / "snap"; }
+  std::filesystem::path vtk_folder() const { return root / "vtk"; }
+};
+
+/// snap/s000123.h5: the state after 123 steps.
+struct SnapshotFile {
+  std::int64_t step = 0;
+  std::filesystem::path path;
+};
+
+/// The restart points of a run, oldest first. Unchecked.
+std::vector<SnapshotFile> list_snapshots(const RunPaths& paths);
+
+/// A run's directory, made when missing, and ours alone until this object goes: a second run is refused
+/// (UsageError, naming the other's process).
+class RunDirectory {
+ public:
+  enum class IfNotEmpty { refuse, keep };
+  RunDirectory(const std::filesystem::path& root, IfNotEmpty if_not_empty);
+
+  const RunPaths& paths() const { return paths_; }
+
+  /// Removes an earlier run's results and nothing else.
+  void clear() const;
+
+ private:
+  void lock();
+
+  RunPaths paths_;
+  Descriptor lock_;
+};
+
+/// Process that runs in the directory now; 0 for none.
+int running_process(const RunPaths& paths);
+
+}  // namespace softgrain

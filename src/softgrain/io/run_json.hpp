@@ -1,0 +1,49 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "softgrain/experiment/run.hpp"
+
+namespace softgrain {
+
+/// What run.json tells about a run: where it came from, how far it is, and what it reached.
+struct RunRecord {
+  std::string state = "running";     ///< running, done, stopped (can be resumed), failed
+  std::string message;               ///< why it stopped or failed
+  std::vector<std::string> command;  ///< the command line that began it
+  std::string started;               ///< UTC, "2025-11-22T00:49:12Z"
+  std::int64_t resumes = 0;          ///< how often it was resumed
+  std::int64_t seed = 0;
+  std::int64_t step = 0;
+  std::int64_t steps_planned = 0;
+  double time = 0;          ///< [s] simulated
+  double progress = 0;      ///< [0, 1]
+  double wall_seconds = 0;  ///< of all resumed parts together
+  double cpu_seconds = 0;
+  double tolerance = 0;  ///< of the solver, beside which the residual is read
+  RunReport report;
+};
+
+/// The text of run.json: the record, its verdict, and what ran it (program, libraries, machine, threads,
+/// memory).
+std::string encode_run_record(const RunRecord& record);
+
+/// What a resumed run takes over from the one before. Raises IoError when the file is not a run.json.
+RunRecord read_run_record(const std::filesystem::path& path);
+
+/// "converged 99.8 % of 30 012 steps, worst residual 3e-04 (tolerance 2e-05), worst overlap 2e-05 of a
+/// primary's radius". 100 % only when every step converged.
+std::string verdict(const RunReport& report, double tolerance);
+
+/// The command line of this process.
+std::vector<std::string> command_line();
+
+/// Now, UTC, "2025-11-22T00:49:12Z".
+std::string utc_now();
+
+/// CPU time of this process so far [s].
+double cpu_seconds();
+
+}  // namespace softgrain

@@ -1,0 +1,93 @@
+#pragma once
+#include <chrono>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "softgrain/experiment/case.hpp"
+#include "softgrain/experiment/run.hpp"
+#include "softgrain/io/progress.hpp"
+#include "softgrain/io/run_directory.hpp"
+#include "softgrain/io/run_json.hpp"
+#include "softgrain/io/series_writer.hpp"
+#include "softgrain/io/signals.hpp"
+#include "softgrain/io/snapshot.hpp"
+#include "softgrain/io/vtp_writer.hpp"
+
+namespace softgrain {
+
+/// What is asked of a run besides its physics.
+struct RunRequest {
+  Case the_case;
+  std::string case_text;             ///< the resolved case, as stored
+  std::vector<std::string> command;  ///< the command line
+  bool resume = false;  ///< from the newest intact snapshot; from the beginning when there is none
+  double stop_after = std::numeric_limits<double>::infinity();  ///< wall time [s]
+  bool verbose = false;                                         ///< the log goes to stderr too
+};
+
+/// Fills a run's directory while the run goes. What is written depends on the simulation's progress alone, so
+/// that a resumed run writes the same: a row of series.csv whenever floor(progress * samples) grows, a
+/// snapshot whenever floor(progress * snapshots) grows, and both for the first and the last state.
+class RunRecorder final : public Recorder {
+ public:
+  RunRecorder(const RunPaths& paths, RunRequest request, Progress& progress, SignalWatch& signals);
+
+  /// Writes the first state.
+  void begin(Simulation& simulation);
+  /// Restores the newest snapshot that is intact and returns the report up to it; says which ones it skipped
+  /// and why. Raises IoError when none is.
+  RunReport resume(Simulation& simulation);
+  bool after_step(Simulation& simulation, const StepReport& step, const RunReport& run) override;
+
+  /// Ends the run as done, or as stopped before its end; returns the program's exit code.
+  int end(const Simulation& simulation);
+  /// Ends it as failed; a full disk is no further error.
+  void fail(const std::string& message);
+
+  const RunRecord& record() const { return record_; }
+  /// The last snapshot that is safely on the disk; empty for none.
+  const std::filesystem::path& last_snapshot() const { return last_snapshot_; }
+
+ private:
+  double wall_seconds() const;
+  bool stop_wanted() const;
+  void log(const std::string& text);
+  Snapshot newest_intact_snapshot();
+  void write_row(Simulation& simulation);
+  void save(const Simulation& simulation);
+  void save_scene(const Simulation& simulation, const Scene& scene);
+  void write_record(const Simulation& simulation);
+
+  RunPaths paths_;
+  RunRequest request_;
+  Progress& progress_;
+  SignalWatch& signals_;
+  AppendFile log_;
+  std::optional<SeriesWriter> series_;
+  RunRecord record_;
+  StepSums sums_;
+  std::vector<Quantity> last_row_;
+  std::vector<Frame> frames_;
+  std::filesystem::path last_snapshot_;
+  int rows_due_ = 0;       ///< floor(progress * samples) at the last row
+  int snapshots_due_ = 0;  ///< the same for snapshots
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double wall_before_ = 0;  ///< of the parts before this one [s]
+  double cpu_before_ = 0;   ///< [s]
+};
+
+/// How a run ended.
+struct RunOutcome {
+  int exit_code = 0;
+  RunRecord record;
+};
+
+/// Runs the simulation to its end, or until it is asked to stop, with everything written to the directory. A
+/// run that breaks down leaves state "failed" in run.json; its error is raised again, with the last good
+/// snapshot named.
+RunOutcome record_run(Simulation& simulation, const RunDirectory& directory, const RunRequest& request,
+                      Progress& progress, SignalWatch& signals);
+
+}  // namespace softgrain

@@ -1,0 +1,186 @@
+#include "softgrain/io/snapshot.hpp"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/core/version.hpp"
+#include "softgrain/io/file.hpp"
+#include "softgrain/io/hdf5_file.hpp"
+
+namespace softgrain {
+
+namespace {
+
+constexpr std::string_view format_name = "softgrain-snapshot";
+constexpr std::int64_t format_version = 1;
+
+/// Absolute path in the file -> dataset.
+using Datasets = std::map<std::string, Array>;
+
+const std::string checkpoint_group = "/checkpoint/", particle_group = "/scene/particles/",
+                  contact_group = "/scene/contacts/", walls_path = "/scene/walls", run_group = "/run/";
+
+class ContentHash {
+ public:
+  ContentHash() { XXH3_128bits_reset(&state_); }
+  void add(const void* data, std::size_t size) { XXH3_128bits_update(&state_, data, size); }
+  void add(std::uint64_t number) { add(&number, sizeof number); }
+  std::string digest() const {
+    const XXH128_hash_t hash = XXH3_128bits_digest(&state_);
+    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+  }
+
+ private:
+  XXH3_state_t state_;
+};
+
+/// XXH3-128 over the datasets in the order of their paths: path, 0, 'f' or 'i', rows, columns, values.
+std::string content_hash(const Datasets& datasets) {
+  ContentHash hash;
+  for (const auto& [path, array] : datasets) {
+    hash.add(path.c_str(), path.size() + 1);
+    hash.add(array.values.index() == 0 ? "f" : "i", 1);
+    std::visit(
+        [&](const auto& values) {
+          hash.add(values.size() / array.columns);
+          hash.add(array.columns);
+          hash.add(values.data(), values.size() * sizeof values[0]);
+        },
+        array.values);
+  }
+  return hash.digest();
+}
+
+/// The datasets of /run: the same list writes and reads them.
+template <class Report, class Sums, class Visit>
+void for_each_total(Report& report, Sums& sums, Visit&& visit) {
+  visit("steps", report.steps);
+  visit("steps_converged", report.steps_converged);
+  visit("sweeps", report.sweeps);
+  visit("residual_max", report.residual_max);
+  visit("overlap_max", report.overlap_max);
+  visit("row_steps", sums.steps);
+  visit("row_sweeps", sums.sweeps);
+  visit("row_residual_mean", sums.residual_mean);
+  visit("row_residual_max", sums.residual_max);
+  visit("row_overlap_mean", sums.overlap_mean);
+  visit("row_overlap_max", sums.overlap_max);
+}
+
+Datasets datasets_of(const Snapshot& snapshot) {
+  Datasets datasets;
+  const auto add = [&](const std::string& group, const std::map<std::string, Array>& arrays) {
+    for (const auto& [name, array] : arrays) datasets[group + name] = array;
+  };
+  add(checkpoint_group, snapshot.checkpoint.arrays);
+  add(particle_group, snapshot.scene.particles);
+  add(contact_group, snapshot.scene.contacts);
+  datasets[walls_path] = {4, snapshot.scene.wall_segments};
+  for_each_total(snapshot.report, snapshot.sums, [&](const char* name, const auto& value) {
+    datasets[run_group + name] = {1, std::vector{value}};
+  });
+  return datasets;
+}
+
+/// The arrays of one group, by their names in it.
+std::map<std::string, Array> arrays_of(const Datasets& datasets, const std::string& group) {
+  std::map<std::string, Array> arrays;
+  for (auto at = datasets.lower_bound(group); at != datasets.end() && at->first.starts_with(group); ++at)
+    arrays[at->first.substr(group.size())] = at->second;
+  return arrays;
+}
+
+/// Distributes datasets whose hash is right; what is missing then was written by another program.
+Snapshot snapshot_of(const Datasets& datasets, const std::string& name) {
+  Snapshot snapshot;
+  try {
+    snapshot.checkpoint.arrays = arrays_of(datasets, checkpoint_group);
+    snapshot.scene.particles = arrays_of(datasets, particle_group);
+    snapshot.scene.contacts = arrays_of(datasets, contact_group);
+    snapshot.scene.wall_segments = std::get<std::vector<double>>(datasets.at(walls_path).values);
+    for_each_total(snapshot.report, snapshot.sums, [&]<class T>(const char* total, T& value) {
+      value = std::get<std::vector<T>>(datasets.at(run_group + total).values).at(0);
+    });
+  } catch (const std::logic_error&) {  // at
+    throw IoError(fmt::format("{}: a dataset is missing", name));
+  } catch (const std::bad_variant_access&) {
+    throw IoError(fmt::format("{}: a dataset has the wrong type", name));
+  }
+  return snapshot;
+}
+
+void check_format(const Hdf5Reader& file, const std::string& name) {
+  if (file.text_attribute("format") != format_name)
+    throw IoError(fmt::format("{}: not a {}", name, format_name));
+  const auto version = file.integer_attribute("version");
+  if (version != format_version)
+    throw IoError(
+        fmt::format("{}: snapshot of version {}; this program reads {}", name, version, format_version));
+  if (file.integer_attribute("complete") != 1)
+    throw IoError(fmt::format("{}: snapshot is not complete", name));
+}
+
+}  // namespace
+
+void StepSums::add(const StepReport& step) {
+  ++steps;
+  sweeps += step.sweeps;
+  residual_mean += step.residual_mean;
+  residual_max = std::max(residual_max, step.residual_max);
+  overlap_mean += step.overlap_mean;
+  overlap_max = std::max(overlap_max, step.overlap_max);
+}
+
+std::string encode_snapshot(const Snapshot& snapshot, const std::string& name) {
+  const Datasets datasets = datasets_of(snapshot);
+  const BuildInfo build = build_info();
+  Hdf5Writer file(name);
+  file.write_attribute("format", format_name);
+  file.write_attribute("version", format_version);
+  file.write_attribute("program",
+                       std::string_view(fmt::format("softgrain {} ({})", build.version, build.commit)));
+  file.write_attribute("step", snapshot.checkpoint.step);
+  file.write_attribute("time", snapshot.checkpoint.time);
+  file.write_attribute("wall_seconds", snapshot.wall_seconds);
+  file.write_attribute("cpu_seconds", snapshot.cpu_seconds);
+  file.write_attribute("case", std::string_view(snapshot.case_text));
+  for (const auto& [path, array] : datasets) file.write(path, array);
+  file.write_attribute("content_hash", std::string_view(content_hash(datasets)));
+  file.write_attribute("complete", std::int64_t{1});
+  return file.finish();
+}
+
+Snapshot decode_snapshot(std::string_view bytes, const std::string& name) {
+  const Hdf5Reader file(bytes, name);
+  check_format(file, name);
+  Datasets datasets;
+  for (const std::string& path : file.datasets()) datasets[path] = file.read(path);
+  if (content_hash(datasets) != file.text_attribute("content_hash"))
+    throw IoError(fmt::format("{}: damaged: the content hash differs", name));
+  Snapshot snapshot = snapshot_of(datasets, name);
+  snapshot.checkpoint.step = file.integer_attribute("step");
+  snapshot.checkpoint.time = file.real_attribute("time");
+  snapshot.wall_seconds = file.real_attribute("wall_seconds");
+  snapshot.cpu_seconds = file.real_attribute("cpu_seconds");
+  snapshot.case_text = file.text_attribute("case");
+  return snapshot;
+}
+
+void write_snapshot(const std::filesystem::path& path, const Snapshot& snapshot) {
+  PendingFile file(path, encode_snapshot(snapshot, path.string()));
+  read_snapshot(file.temporary());  // raises IoError unless the disk gives back what it got
+  file.commit();
+}
+
+Snapshot read_snapshot(const std::filesystem::path& path) {
+  return decode_snapshot(read_file(path), path.string());
+}
+
+double snapshot_time(const std::filesystem::path& path) { return Hdf5Reader(path).real_attribute("time"); }
+
+}  // namespace softgrain

@@ -1,0 +1,181 @@
+#include "softgrain/io/vtp_writer.hpp"
+
+#include <zlib.h>
+
+#include <cfloat>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <string_view>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/io/file.hpp"
+
+namespace softgrain {
+
+namespace {
+
+float as_float(double value) {
+  const auto narrow = static_cast<float>(value);
+  return std::fabs(narrow) < FLT_MIN ? 0.0F : narrow;
+}
+
+template <class T>
+std::string raw_bytes(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+/// VTK's compressed block: number of blocks, size of a block, of a last partial one, of each when compressed.
+std::string compressed_block(const std::string& raw) {
+  if (raw.empty()) return raw_bytes(std::vector<std::uint64_t>{0, 0, 0});
+  std::string packed(compressBound(raw.size()), '\0');
+  uLongf size = packed.size();
+  constexpr int fastest = 1;
+  if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(raw.data()),
+                raw.size(), fastest) != Z_OK)
+    throw IoError("zlib could not compress a .vtp array");
+  packed.resize(size);
+  return raw_bytes(std::vector<std::uint64_t>{1, raw.size(), 0, size}) + packed;
+}
+
+/// The XML of a .vtp file and, behind it, its binary blocks.
+class VtpText {
+ public:
+  void line(std::string_view text) { xml_ += fmt::format("{}\n", text); }
+
+  void array(const std::string& name, const Array& array) {
+    if (const auto* reals = std::get_if<std::vector<double>>(&array.values)) {
+      const std::size_t columns = array.columns == 2 ? 3 : array.columns;
+      std::vector<float> floats;
+      for (std::size_t k = 0; k < reals->size(); ++k) {
+        floats.push_back(as_float((*reals)[k]));
+        if (array.columns == 2 && k % 2 == 1) floats.push_back(0);
+      }
+      block("Float32", name, columns, raw_bytes(floats));
+    } else {
+      block("Int64", name, array.columns, raw_bytes(std::get<std::vector<std::int64_t>>(array.values)));
+    }
+  }
+
+  std::string finish() const {
+    return xml_ + "<AppendedData encoding=\"raw\">\n_" + blocks_ + "\n</AppendedData>\n</VTKFile>\n";
+  }
+
+ private:
+  void block(std::string_view type, const std::string& name, std::size_t columns, const std::string& raw) {
+    line(fmt::format(
+        R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)", type,
+        name, columns, blocks_.size()));
+    blocks_ += compressed_block(raw);
+  }
+
+  std::string xml_, blocks_;
+};
+
+Array integers(std::size_t count, std::int64_t first, std::int64_t stride) {
+  std::vector<std::int64_t> values(count);
+  for (std::size_t k = 0; k < count; ++k) values[k] = first + stride * static_cast<std::int64_t>(k);
+  return {1, values};
+}
+
+/// Rows of an array, in the order of `rows`.
+Array select_rows(const Array& array, const std::vector<std::size_t>& rows) {
+  Array selected{array.columns, array.values};
+  std::visit(
+      [&](auto& values) {
+        const auto all = values;
+        values.clear();
+        for (const std::size_t row : rows)
+          for (std::size_t k = 0; k < array.columns; ++k) values.push_back(all[row * array.columns + k]);
+      },
+      selected.values);
+  return selected;
+}
+
+std::vector<double> positions_of(const Scene& scene) {
+  const auto at = scene.particles.find("position");
+  return at == scene.particles.end() ? std::vector<double>{}
+                                     : std::get<std::vector<double>>(at->second.values);
+}
+
+}  // namespace
+
+PolyData particles_of(const Scene& scene) {
+  PolyData data;
+  data.positions = positions_of(scene);
+  data.point_data = scene.particles;
+  data.point_data.erase("position");
+  return data;
+}
+
+PolyData contacts_of(const Scene& scene) {
+  PolyData data;
+  data.positions = positions_of(scene);
+  data.has_lines = true;
+  const auto pair = scene.contacts.find("pair");
+  if (pair == scene.contacts.end()) return data;
+  const auto& ends = std::get<std::vector<std::int64_t>>(pair->second.values);
+  const auto points = static_cast<std::int64_t>(data.positions.size() / 2);
+  const auto is_particle = [&](std::int64_t end) { return end >= 0 && end < points; };
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; 2 * k + 1 < ends.size(); ++k)
+    if (is_particle(ends[2 * k]) && is_particle(ends[2 * k + 1])) kept.push_back(k);
+  for (const std::size_t k : kept) data.lines.insert(data.lines.end(), {ends[2 * k], ends[2 * k + 1]});
+  for (const auto& [name, array] : scene.contacts)
+    if (name != "pair") data.cell_data[name] = select_rows(array, kept);
+  return data;
+}
+
+PolyData walls_of(const Scene& scene) {
+  PolyData data;
+  data.positions = scene.wall_segments;
+  data.has_lines = true;
+  data.lines.resize(scene.wall_segments.size() / 2);
+  std::iota(data.lines.begin(), data.lines.end(), 0);
+  return data;
+}
+
+std::string encode_vtp(const PolyData& data) {
+  const std::size_t points = data.positions.size() / 2;
+  const std::size_t lines = data.lines.size() / 2;
+  VtpText text;
+  text.line(R"(<?xml version="1.0"?>)");
+  text.line(
+      R"(<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64" compressor="vtkZLibDataCompressor">)");
+  text.line("<PolyData>");
+  text.line(fmt::format(
+      R"(<Piece NumberOfPoints="{}" NumberOfVerts="{}" NumberOfLines="{}" NumberOfStrips="0" NumberOfPolys="0">)",
+      points, data.has_lines ? 0 : points, lines));
+  text.line("<PointData>");
+  for (const auto& [name, array] : data.point_data) text.array(name, array);
+  text.line("</PointData>\n<CellData>");
+  for (const auto& [name, array] : data.cell_data) text.array(name, array);
+  text.line("</CellData>\n<Points>");
+  text.array("position", {2, data.positions});
+  text.line("</Points>");
+  const std::string_view cells = data.has_lines ? "Lines" : "Verts";
+  text.line(fmt::format("<{}>", cells));
+  text.array("connectivity", data.has_lines ? Array{1, data.lines} : integers(points, 0, 1));
+  text.array("offsets", data.has_lines ? integers(lines, 2, 2) : integers(points, 1, 1));
+  text.line(fmt::format("</{}>\n</Piece>\n</PolyData>", cells));
+  return text.finish();
+}
+
+void write_scene(const std::filesystem::path& folder, const std::string& label, const Scene& scene) {
+  write_file(folder / fmt::format("particles_{}.vtp", label), encode_vtp(particles_of(scene)));
+  write_file(folder / fmt::format("contacts_{}.vtp", label), encode_vtp(contacts_of(scene)));
+  write_file(folder / fmt::format("walls_{}.vtp", label), encode_vtp(walls_of(scene)));
+}
+
+std::string pvd_text(const std::vector<Frame>& frames, const std::string& folder) {
+  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
+  for (const Frame& frame : frames) {
+    int part = 0;
+    for (const std::string_view name : {"particles", "contacts", "walls"})
+      text += fmt::format("<DataSet timestep=\"{}\" part=\"{}\" name=\"{}\" file=\"{}/{}_{}.vtp\"/>\n",
+                          frame.time, part++, name, folder, name, frame.label);
+  }
+  return text + "</Collection>\n</VTKFile>\n";
+}
+
+}  // namespace softgrain

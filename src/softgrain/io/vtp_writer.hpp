@@ -1,0 +1,43 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "softgrain/experiment/simulation.hpp"
+
+namespace softgrain {
+
+/// What a .vtp file of ParaView holds: points, and cells: lines between two points, or else every point.
+struct PolyData {
+  std::vector<double> positions;  ///< x y for each point [m]
+  bool has_lines = false;
+  std::vector<std::int64_t> lines;          ///< pairs of point indices
+  std::map<std::string, Array> point_data;  ///< one row per point
+  std::map<std::string, Array> cell_data;   ///< one row per cell
+};
+
+PolyData particles_of(const Scene& scene);
+/// A line between the particles of each contact. Contacts with something else than a particle (an index
+/// outside) are left out.
+PolyData contacts_of(const Scene& scene);
+PolyData walls_of(const Scene& scene);
+
+/// The bytes of a .vtp file: appended raw blocks, zlib, 64 bit headers, reals as float32 with denormal
+/// numbers flushed to zero. Two columns become three (z = 0), as ParaView's vectors.
+std::string encode_vtp(const PolyData& data);
+
+/// Writes particles_, contacts_ and walls_`label`.vtp into the folder.
+void write_scene(const std::filesystem::path& folder, const std::string& label, const Scene& scene);
+
+/// One time of the collection that ParaView opens.
+struct Frame {
+  double time = 0;    ///< [s]
+  std::string label;  ///< of its files
+};
+
+/// The text of a .pvd file: every frame with its three parts in `folder`.
+std::string pvd_text(const std::vector<Frame>& frames, const std::string& folder);
+
+}  // namespace softgrain
