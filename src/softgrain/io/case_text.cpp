@@ -71,6 +71,14 @@ std::string resolved_case_text(const Case& the_case) {
   return text;
 }
 
+std::string case_json(const Case& the_case) {
+  Json tables = Json::object();
+  for_each_key(
+      [&](const TableOfKeys& table) { tables[table.name] = Json::object(); },
+      [&](const Key& key) { tables[key.table()][key.short_name()] = Json::parse(si_value(the_case, key)); });
+  return tables.dump(2);
+}
+
 std::string commented_case_text(const Case& the_case) {
   std::string text =
       "# A softgrain case. Quantities are written with their unit, or as plain numbers in SI. What is left "

@@ -10,6 +10,9 @@ namespace softgrain {
 /// for bit.
 std::string resolved_case_text(const Case& the_case);
 
+/// The resolved case as JSON: an object for each table.
+std::string case_json(const Case& the_case);
+
 /// A case file to edit: every key with its value in the unit in which people write it, and what it means
 /// above it.
 std::string commented_case_text(const Case& the_case);

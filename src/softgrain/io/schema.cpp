@@ -114,6 +114,14 @@ std::string sweeps_reversed(const Case& c) {
                      c.solver.min_sweeps, c.solver.max_sweeps);
 }
 
+std::string too_many_steps(const Case& c) {
+  constexpr double most = 1e12;
+  const double steps = 2 * c.grain.radius / (c.loading.wall_velocity * c.time.step);
+  if (steps <= most) return "";
+  return fmt::format(
+      "{:.1g} time steps to cross the grain are too many: raise time.step or loading.wall_velocity", steps);
+}
+
 }  // namespace
 
 bool Range::contains(double value) const {
@@ -147,6 +155,7 @@ const std::vector<Relation>& case_relations() {
       {{"loading.unload_at", "loading.max_strain"}, unloading_after_the_end},
       {{"loading.unload_by", "loading.unload_at"}, unloading_below_zero},
       {{"solver.min_sweeps", "solver.max_sweeps"}, sweeps_reversed},
+      {{"time.step", "loading.wall_velocity", "grain.radius"}, too_many_steps},
   };
   return relations;
 }
