@@ -54,9 +54,9 @@ if ! command -v dpkg-query apt-get >/dev/null; then
   exit 0
 fi
 
-installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' $(awk '{print $2}' <<<"$wanted") 2>/dev/null |
-  awk '$2 == "installed" {print $1}' || true)
-missing=$(awk 'NR == FNR {there[$1]; next} !($2 in there)' <(echo "$installed") <(echo "$wanted"))
+there=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' $(awk '{print $2}' <<<"$wanted") 2>/dev/null |
+  awk '$1 == "installed" {print $2}' || true)
+missing=$(awk -v there=" ${there//$'\n'/ } " '!index(there, " " $2 " ")' <<<"$wanted")
 [[ -n $missing ]] || exit 0
 
 echo "Installing what is missing:"
