@@ -5,6 +5,8 @@
 
 #include <cstdlib>
 
+#include "softgrain/core/error.hpp"
+
 namespace softgrain {
 
 bool wants_colour(std::FILE* stream) {
@@ -26,6 +28,11 @@ void print_error(std::string_view message) {
   if (text.empty() || text.back() != '\n') text += '\n';
   std::fflush(stdout);
   fmt::print(stderr, "{}", text);
+}
+
+void print_result(std::string_view text) {
+  const bool all = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (!all || std::fflush(stdout) != 0) throw IoError("cannot write to stdout");
 }
 
 }  // namespace softgrain

@@ -12,4 +12,7 @@ bool wants_colour(std::FILE* stream);
 /// wanted.
 void print_error(std::string_view message);
 
+/// Prints a result to stdout, at once. Raises IoError when it cannot be written.
+void print_result(std::string_view text);
+
 }  // namespace softgrain

@@ -90,8 +90,6 @@ RunDirectory::RunDirectory(const fs::path& root, IfNotEmpty if_not_empty) : path
     refuse_if_not_empty(paths_);  // before a lock file of ours lies there
   lock();
   remove_unfinished(paths_);
-  fs::create_directories(paths_.snapshot_folder());
-  fs::create_directories(paths_.vtk_folder());
 }
 
 void RunDirectory::lock() {

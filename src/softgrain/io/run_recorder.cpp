@@ -55,11 +55,7 @@ std::vector<Quantity> solver_columns(const StepSums& sums, double wall_seconds) 
 }  // namespace
 
 RunRecorder::RunRecorder(const RunPaths& paths, RunRequest request, Progress& progress, SignalWatch& signals)
-    : paths_(paths),
-      request_(std::move(request)),
-      progress_(progress),
-      signals_(signals),
-      log_(paths.log_file()) {
+    : paths_(paths), request_(std::move(request)), progress_(progress), signals_(signals) {
   record_.command = request_.command;
   record_.started = utc_now();
   record_.seed = request_.the_case.sample.seed;
@@ -76,11 +72,15 @@ bool RunRecorder::stop_wanted() const {
 }
 
 void RunRecorder::log(const std::string& text) {
-  log_.append(fmt::format("{} {}\n", utc_now(), text));
+  if (!log_) log_.emplace(paths_.log_file());
+  log_->append(fmt::format("{} {}\n", utc_now(), text));
   if (request_.verbose) progress_.message(text);
 }
 
 void RunRecorder::begin(Simulation& simulation) {
+  write_record(simulation);  // first of all: run.json is what makes this directory a run's
+  fs::create_directories(paths_.snapshot_folder());
+  if (request_.the_case.output.vtk) fs::create_directories(paths_.vtk_folder());
   log(fmt::format("begin: {} steps planned", simulation.steps_planned()));
   write_file(paths_.case_file(), request_.case_text);
   series_.emplace(paths_.series_file());

@@ -64,7 +64,7 @@ class RunRecorder final : public Recorder {
   RunRequest request_;
   Progress& progress_;
   SignalWatch& signals_;
-  AppendFile log_;
+  std::optional<AppendFile> log_;
   std::optional<SeriesWriter> series_;
   RunRecord record_;
   StepSums sums_;

@@ -1,0 +1,159 @@
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
+#include "softgrain/experiment/create.hpp"
+#include "softgrain/io/case_file.hpp"
+#include "softgrain/io/case_text.hpp"
+#include "softgrain/io/run_recorder.hpp"
+#include "softgrain/io/units.hpp"
+#include "terminal.hpp"
+#include "verbs.hpp"
+
+namespace softgrain {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// What run and resume have in common.
+struct RunOptions {
+  std::string directory;
+  int threads = 0;  ///< 0: as OpenMP chooses
+  std::string stop_after;
+  ProgressStyle progress = ProgressStyle::automatic;
+  bool quiet = false;
+  bool verbose = false;
+};
+
+struct RunArguments {
+  CaseArguments the_case;
+  RunOptions options;
+  bool resume = false;
+  bool force = false;
+};
+
+void add_run_options(CLI::App& verb, RunOptions& options) {
+  const std::map<std::string, ProgressStyle> styles{{"auto", ProgressStyle::automatic},
+                                                    {"tty", ProgressStyle::tty},
+                                                    {"plain", ProgressStyle::plain},
+                                                    {"none", ProgressStyle::none}};
+  verb.add_option("-j,--threads", options.threads, "threads (default: OMP_NUM_THREADS, or one per core)")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--stop-after", options.stop_after,
+                  "wall time, as \"90 min\": then write a snapshot and exit with code 75")
+      ->type_name("TIME");
+  verb.add_option("--progress", options.progress, "auto, tty, plain or none")
+      ->transform(CLI::CheckedTransformer(styles).description(""))
+      ->type_name("STYLE");
+  auto* quiet = verb.add_flag("-q,--quiet", options.quiet, "print nothing but errors");
+  verb.add_flag("-v,--verbose", options.verbose, "print the log as well")->excludes(quiet);
+}
+
+double seconds_of(const std::string& text) {
+  if (text.empty()) return std::numeric_limits<double>::infinity();
+  const double seconds = parse_quantity(text, {.length = 0, .mass = 0, .time = 1});
+  require(seconds > 0, "--stop-after must be positive, got {}", text);
+  return seconds;
+}
+
+/// What the user reads when the program is back, and what to do next.
+std::string closing_words(const RunRecord& record, const std::string& directory) {
+  const auto reached = verdict(record.report, record.tolerance);
+  if (record.state == "done")
+    return fmt::format("{}\nresults in {}; next: softgrain plot {}\n", reached, directory, directory);
+  return fmt::format("stopped {} at {:.1f} %: {}\nresults in {}; go on with: softgrain resume {}\n",
+                     record.message, 100 * record.progress, reached, directory, directory);
+}
+
+void carry_out(RunRequest request, const RunDirectory& directory, const RunOptions& options) {
+  SignalWatch signals;
+  if (options.threads > 0) set_threads(options.threads);
+  request.command = command_line();
+  request.stop_after = seconds_of(options.stop_after);
+  request.verbose = options.verbose;
+  const auto simulation = create_simulation(request.the_case);
+  RunOutcome outcome;
+  {
+    Progress progress(options.quiet ? ProgressStyle::none : options.progress);
+    outcome = record_run(*simulation, directory, request, progress, signals);
+  }
+  if (!options.quiet) print_result(closing_words(outcome.record, directory.paths().root.string()));
+  if (outcome.exit_code != 0) throw ExitCode{outcome.exit_code};
+}
+
+/// "squeeze_run" beside "squeeze.toml".
+fs::path default_directory(const fs::path& case_file) {
+  return case_file.parent_path() / (case_file.stem().string() + "_run");
+}
+
+void run_case(const RunArguments& arguments) {
+  const CaseArguments& source = arguments.the_case;
+  RunRequest request;
+  request.the_case = read_case(source.path, source.sets);
+  request.case_text = resolved_case_text(request.the_case);
+  request.resume = arguments.resume;
+  const RunPaths paths{arguments.options.directory.empty() ? default_directory(source.path)
+                                                           : fs::path(arguments.options.directory)};
+  std::error_code no_such_file;
+  require(arguments.resume || !fs::equivalent(source.path, paths.case_file(), no_such_file),
+          "{} lies in the run's directory and would be overwritten; choose another with -o", source.path);
+  const bool going_on = arguments.resume && fs::exists(paths.run_file());
+  require(!going_on || read_file(paths.case_file()) == request.case_text,
+          "{} is not the case that {} was begun with; `softgrain resume {}` goes on with the stored one",
+          source.path, paths.root.string(), paths.root.string());
+  const bool keep = arguments.force || going_on;
+  const RunDirectory directory(paths.root,
+                               keep ? RunDirectory::IfNotEmpty::keep : RunDirectory::IfNotEmpty::refuse);
+  carry_out(std::move(request), directory, arguments.options);
+}
+
+void resume_run(const RunOptions& options) {
+  const RunPaths paths{options.directory};
+  require(fs::exists(paths.run_file()), "{} is not a run's directory: it has no run.json", options.directory);
+  const RunDirectory directory(paths.root, RunDirectory::IfNotEmpty::keep);
+  RunRequest request;
+  request.the_case = read_case(paths.case_file().string());
+  request.case_text = read_file(paths.case_file());
+  request.resume = true;
+  carry_out(std::move(request), directory, options);
+}
+
+}  // namespace
+
+void add_run_verb(CLI::App& app) {
+  auto* run = app.add_subcommand("run", "carry out a case; results go to a directory");
+  auto arguments = std::make_shared<RunArguments>();
+  add_case_arguments(*run, arguments->the_case);
+  run->add_option("-o,--output", arguments->options.directory,
+                  "directory (default: CASE without .toml, with _run)")
+      ->type_name("DIR");
+  auto* resume =
+      run->add_flag("--resume", arguments->resume, "go on from the newest intact snapshot, if there is one");
+  run->add_flag("--force", arguments->force, "replace an earlier run's results")->excludes(resume);
+  add_run_options(*run, arguments->options);
+  run->footer(
+      "Examples:\n"
+      "  softgrain run squeeze/case.toml                    into squeeze/case_run\n"
+      "  softgrain run case.toml --set contact.friction=0.3 -o friction -j 4\n"
+      "  softgrain run case.toml -o out --resume --stop-after \"23 h\"    in a queue: exit code 75 asks to "
+      "come again\n"
+      "\nCtrl-C: finish the step, write a snapshot, exit 130. SIGTERM, SIGUSR2, SIGHUP: the same, exit 75. "
+      "SIGUSR1:\n"
+      "write a snapshot and go on.");
+  run->callback([arguments] { run_case(*arguments); });
+
+  auto* again = app.add_subcommand("resume", "go on with a run that was stopped or killed");
+  auto options = std::make_shared<RunOptions>();
+  again->add_option("DIR", options->directory, "a run's directory")->required();
+  add_run_options(*again, *options);
+  again->footer("Example:\n  softgrain resume squeeze/case_run");
+  again->callback([options] { resume_run(*options); });
+}
+
+}  // namespace softgrain
