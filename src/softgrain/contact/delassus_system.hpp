@@ -37,7 +37,6 @@ class DelassusSystem {
   }
   void apply_impulse(int contact, const Vec<Dim>& dp) { impulse_[contact] += dp; }
 
-  std::span<const Vec<Dim>> impulse() const { return impulse_; }              ///< p [N s]
   std::span<const Vec<Dim>> free_velocity() const { return free_velocity_; }  ///< q [m/s]
 
  private:

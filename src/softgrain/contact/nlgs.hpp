@@ -42,18 +42,6 @@ Violation nlgs_sweep(System& system, std::span<Vec<Dim>> impulse, std::span<cons
   return violation;
 }
 
-/// Root mean square over contacts of the velocity that the others give, u_c - W_cc p_c [m/s]: from p = 0 that
-/// of q.
-template <int Dim, ContactSystem<Dim> System>
-double typical_velocity(const System& system, std::span<const Vec<Dim>> impulse) {
-  double sum = 0;
-  for (int c = 0; c < system.size(); ++c) {
-    const Vec<Dim> q = system.relative_velocity(c) - system.delassus_block(c) * impulse[c];
-    sum += dot(q, q);
-  }
-  return sum > 0 ? std::sqrt(sum / system.size()) : 1;
-}
-
 /// Nonlinear Gauss-Seidel (Moreau, Jean): sweeps over the contacts in the order given until the law holds
 /// everywhere to the tolerance, or max_sweeps. `impulse` [N s] is the start (warm start) and becomes the
 /// solution; the velocities of `system` must already include it, and include the solution on return.

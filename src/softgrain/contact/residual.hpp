@@ -4,21 +4,22 @@
 #include <cstddef>
 #include <span>
 
+#include "softgrain/contact/contact_system.hpp"
 #include "softgrain/contact/signorini_coulomb.hpp"
 #include "softgrain/contact/solver_options.hpp"
 #include "softgrain/math/vec.hpp"
 
 namespace softgrain {
 
-/// How far the contacts were from their law when a sweep came to them. The violation of a contact is the jump
-/// of its velocity when its own impulse alone puts it right, v_c = |W_cc (p_c' - p_c)| [m/s]: zero exactly
-/// where the law holds, whatever the conditioning of W_cc. Without friction v_c = |min(W_nn p_n, u_n)|.
+/// How far contacts are from their law. The violation of a contact is the jump of its velocity when its own
+/// impulse alone puts it right, v_c = |W_cc (p_c' - p_c)| [m/s]: zero exactly where the law holds, whatever
+/// the conditioning of W_cc. Without friction v_c = |min(W_nn p_n, u_n)|.
 struct Violation {
   double sum_of_squares = 0;  ///< of v_c [m^2/s^2]
   double max_square = 0;      ///< of v_c [m^2/s^2]
   int contacts = 0;           ///< those that carry impulse or are violated
 
-  /// Counts a contact by its v_c^2 and whether it carries impulse after the update.
+  /// Counts a contact by its v_c^2 and whether it carries impulse once put right.
   void add(double square, bool carries_impulse) {
     if (!carries_impulse && square == 0) return;
     sum_of_squares += square;
@@ -27,7 +28,20 @@ struct Violation {
   }
 };
 
-/// The report of a solve that ends with this violation; `velocity_scale` [m/s] > 0 makes it unit-free.
+/// Root mean square over contacts of the velocity that the others give, u_c - W_cc p_c [m/s]; from p = 0 that
+/// of q. 1 when nothing moves.
+template <int Dim, ContactSystem<Dim> System>
+double typical_velocity(const System& system, std::span<const Vec<Dim>> impulse) {
+  double sum = 0;
+  for (int c = 0; c < system.size(); ++c) {
+    const Vec<Dim> q = system.relative_velocity(c) - system.delassus_block(c) * impulse[c];
+    sum += dot(q, q);
+  }
+  return sum > 0 ? std::sqrt(sum / system.size()) : 1;
+}
+
+/// The unit-free report: converged iff rms(v_c) <= tolerance and max(v_c) <= worst_factor tolerance, in units
+/// of velocity_scale [m/s] > 0.
 inline SolverReport report_of(const Violation& violation, int sweeps, double velocity_scale,
                               const SolverOptions& options) {
   SolverReport report{.sweeps = sweeps};
@@ -39,26 +53,33 @@ inline SolverReport report_of(const Violation& violation, int sweeps, double vel
   return report;
 }
 
+/// u + mu |u_t| n: with it Signorini's and Coulomb's laws are one complementarity on the Coulomb cone K and
+/// its dual, K* contains u + mu |u_t| n _|_ p in K (De Saxce & Feng 1998).
+template <int Dim>
+Vec<Dim> de_saxce_velocity(Vec<Dim> u, double mu) {
+  const double normal = u[0];
+  u[0] = 0;
+  u[0] = normal + mu * norm(u);
+  return u;
+}
+
 /// Euclidean norm over all contacts of the natural map p - P(p - (u + mu |u_t| n)), P the projection on the
-/// Coulomb cone (De Saxce & Feng 1998). Zero exactly where Signorini's and Coulomb's laws hold. It adds
-/// impulses to velocities with rho = 1 in the units of the file, as Siconos' fc2d_compute_error and
-/// fc3d_compute_error do; divide by |q| for theirs.
+/// Coulomb cone. Zero exactly where the laws hold. It adds impulses to velocities, rho = 1 in the units
+/// given, as Siconos' fc2d_compute_error and fc3d_compute_error do; divided by |q| it is theirs.
 template <int Dim>
 double natural_map_residual(std::span<const Vec<Dim>> impulse, std::span<const Vec<Dim>> velocity,
                             std::span<const double> friction) {
   double sum = 0;
   for (std::size_t c = 0; c < impulse.size(); ++c) {
-    const Vec<Dim>& p = impulse[c];
-    Vec<Dim> shifted = velocity[c];  // u + mu |u_t| n
-    shifted[0] = 0;
-    shifted[0] = velocity[c][0] + friction[c] * norm(shifted);
-    const Vec<Dim> defect = p - project_on_coulomb_cone(p - shifted, friction[c]);
+    const Vec<Dim> moved = impulse[c] - de_saxce_velocity(velocity[c], friction[c]);
+    const Vec<Dim> defect = impulse[c] - project_on_coulomb_cone(moved, friction[c]);
     sum += dot(defect, defect);
   }
   return std::sqrt(sum);
 }
 
-/// E = 1/2 p.W p + q.p = 1/2 p.(u + q) [J], the energy that contact takes from (E < 0) the motion.
+/// E = 1/2 p.W p + q.p = 1/2 p.(u + q) [J]: what the impulses add to the kinetic energy, < 0 where they
+/// dissipate.
 template <int Dim>
 double contact_energy(std::span<const Vec<Dim>> impulse, std::span<const Vec<Dim>> velocity,
                       std::span<const Vec<Dim>> free_velocity) {

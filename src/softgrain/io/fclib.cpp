@@ -23,9 +23,9 @@ using Sparse = Eigen::SparseMatrix<double>;
 constexpr int largest = std::numeric_limits<int>::max();
 
 /// The datasets of one file, every number checked before it is used.
-class FclibFile {
+class Datasets {
  public:
-  explicit FclibFile(const std::filesystem::path& file) : name_(file.string()), reader_(file) {}
+  explicit Datasets(const std::filesystem::path& file) : name_(file.string()), reader_(file) {}
 
   bool has(const std::string& path) const { return reader_.has(path); }
 
@@ -78,8 +78,8 @@ class FclibFile {
 };
 
 /// The line (row or column) of every entry, from the start pointers of compressed storage.
-std::vector<std::int64_t> FclibFile::expand(const std::string& path, std::size_t lines,
-                                            std::size_t stored) const {
+std::vector<std::int64_t> Datasets::expand(const std::string& path, std::size_t lines,
+                                           std::size_t stored) const {
   const auto start = integers(path);
   check(start.size() == lines + 1, path, "holds {} pointers, needs {}", start.size(), lines + 1);
   check(start.front() == 0, path, "starts with {}, must start with 0", start.front());
@@ -94,8 +94,8 @@ std::vector<std::int64_t> FclibFile::expand(const std::string& path, std::size_t
 
 /// A sparse matrix as CSparse stores it: nz >= 0 counts triplets (i = rows, p = columns); -1 means compressed
 /// columns, -2 compressed rows (p = start pointers, i = the other index).
-std::vector<MatrixEntry> FclibFile::matrix(const std::string& group, std::size_t rows,
-                                           std::size_t columns) const {
+std::vector<MatrixEntry> Datasets::matrix(const std::string& group, std::size_t rows,
+                                          std::size_t columns) const {
   const int m = integer(group + "/m", 0, largest), n = integer(group + "/n", 0, largest);
   check(static_cast<std::size_t>(m) == rows, group + "/m", "is {}, but the vectors need {} rows", m, rows);
   check(static_cast<std::size_t>(n) == columns, group + "/n", "is {}, but the vectors need {} columns", n,
@@ -130,7 +130,7 @@ Sparse sparse(const std::vector<MatrixEntry>& entries, std::size_t rows, std::si
 }
 
 /// M v = H p + f, u = H^T v + w becomes u = W p + q with W = H^T M^-1 H, q = H^T M^-1 f + w.
-void read_global(const FclibFile& file, FclibProblem& problem) {
+void read_global(const Datasets& file, ContactProblem& problem) {
   const std::size_t size = problem.friction.size() * problem.dimension;
   const auto w = file.vector("/fclib_global/vectors/w", size);
   const auto f_values = file.reals("/fclib_global/vectors/f");
@@ -156,19 +156,20 @@ void read_global(const FclibFile& file, FclibProblem& problem) {
       problem.W.push_back({static_cast<int>(entry.row()), column, entry.value()});
 }
 
-void refuse_equality_constraints(const FclibFile& file, const std::string& group) {
+void refuse_equality_constraints(const Datasets& file, const std::string& group) {
   for (const char* name : {"/V", "/R", "/G", "/vectors/s", "/vectors/b"})
     file.check(!file.has(group + name), group + name,
                "belongs to equality constraints, and softgrain solves contacts only: eliminate them");
 }
 
-FclibProblem read_problem(const FclibFile& file) {
+FclibFile read_problem(const Datasets& file) {
   const bool local = file.has("/fclib_local");
   const std::string group = local ? "/fclib_local" : "/fclib_global";
   file.check(local || file.has(group), "/fclib_local", "and '/fclib_global' are missing: no FCLIB problem");
   refuse_equality_constraints(file, group);
 
-  FclibProblem problem;
+  FclibFile result;
+  ContactProblem& problem = result.problem;
   problem.dimension = file.integer(group + "/spacedim", 2, 3);
   problem.friction = file.reals(group + "/vectors/mu");
   file.check_finite(group + "/vectors/mu", problem.friction);
@@ -182,16 +183,15 @@ FclibProblem read_problem(const FclibFile& file) {
   } else {
     read_global(file, problem);
   }
-  if (file.has("/solution/r")) problem.solution_p = file.vector("/solution/r", size);
-  if (file.has("/solution/u")) problem.solution_u = file.vector("/solution/u", size);
-  return problem;
+  if (file.has("/solution/u")) result.stored_velocity = file.vector("/solution/u", size);
+  return result;
 }
 
 }  // namespace
 
-FclibProblem read_fclib(const std::filesystem::path& file) {
+FclibFile read_fclib(const std::filesystem::path& file) {
   try {
-    return read_problem(FclibFile(file));
+    return read_problem(Datasets(file));
   } catch (const IoError& error) {  // not HDF5, cut short, damaged: the user's file, not our disk
     throw UsageError(
         fmt::format("{}; softgrain reads contact problems in FCLIB's HDF5 format", error.what()));

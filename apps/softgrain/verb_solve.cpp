@@ -1,0 +1,93 @@
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+
+#include <ctime>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "softgrain/contact/contact_problem.hpp"
+#include "softgrain/io/fclib.hpp"
+#include "verbs.hpp"
+
+namespace softgrain {
+namespace {
+
+constexpr int not_converged = 3;
+
+struct SolveOptions {
+  std::string path;
+  std::string method = "nesterov";
+  ContactProblemOptions solver;
+  bool json = false;
+};
+
+struct Outcome {
+  ContactProblem problem;
+  ContactSolution solution;
+  double cpu_seconds = 0;  ///< of solving, without reading
+};
+
+void print_json(const SolveOptions& options, const Outcome& outcome) {
+  const nlohmann::ordered_json result{{"file", options.path},
+                                      {"method", options.method},
+                                      {"contacts", outcome.problem.contacts()},
+                                      {"dimension", outcome.problem.dimension},
+                                      {"sweeps", outcome.solution.sweeps},
+                                      {"natural_map_residual", outcome.solution.residual},
+                                      {"energy", outcome.solution.energy},
+                                      {"cpu_seconds", outcome.cpu_seconds},
+                                      {"converged", outcome.solution.converged},
+                                      {"tolerance", options.solver.tolerance}};
+  fmt::print("{}\n", result.dump(2));
+}
+
+void print_table(const SolveOptions& options, const Outcome& outcome) {
+  const ContactSolution& solution = outcome.solution;
+  fmt::print(
+      "problem   {}: {} contacts in {}D\n"
+      "method    {}, {} {}\n"
+      "residual  {:.3g} ({} {:g}): natural map over |q|\n"
+      "energy    {:.12g}: p.W p / 2 + q.p\n"
+      "time      {:.3g} CPU s\n",
+      options.path, outcome.problem.contacts(), outcome.problem.dimension, options.method, solution.sweeps,
+      options.method == "nlgs" ? "sweeps" : "iterations", solution.residual,
+      solution.converged ? "converged to" : "NOT converged to", options.solver.tolerance, solution.energy,
+      outcome.cpu_seconds);
+}
+
+void solve(SolveOptions& options) {
+  options.solver.method = options.method == "nlgs" ? ContactMethod::nlgs : ContactMethod::nesterov;
+  Outcome outcome{.problem = read_fclib(options.path).problem};
+  const std::clock_t start = std::clock();
+  outcome.solution = solve_contact_problem(outcome.problem, options.solver);
+  outcome.cpu_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  options.json ? print_json(options, outcome) : print_table(options, outcome);
+  if (!outcome.solution.converged) throw ExitCode{not_converged};
+}
+
+}  // namespace
+
+void add_solve_verb(CLI::App& app) {
+  auto options = std::make_shared<SolveOptions>();
+  CLI::App* verb = app.add_subcommand("solve", "Solve a frictional contact problem in FCLIB's HDF5 format");
+  verb->add_option("FILE", options->path, "local (W, q, mu) or global (M, H, f, w, mu) problem")->required();
+  verb->add_option("--method", options->method, "nesterov or nlgs")
+      ->check(CLI::IsMember({"nesterov", "nlgs"}))
+      ->capture_default_str();
+  verb->add_option("--tolerance", options->solver.tolerance, "on the natural-map residual over |q|")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  verb->add_option("--max-sweeps", options->solver.max_sweeps, "sweeps of nlgs, iterations of nesterov")
+      ->check(CLI::Range(0, 2000000000))
+      ->capture_default_str();
+  verb->add_flag("--json", options->json, "one JSON object on stdout");
+  verb->footer(
+      "Exit code 3: not converged; the best that was found is printed all the same.\n"
+      "Examples:\n"
+      "  softgrain solve problem.hdf5\n"
+      "  softgrain solve problem.hdf5 --method nlgs --tolerance 1e-5 --json");
+  verb->callback([options] { solve(*options); });
+}
+
+}  // namespace softgrain

@@ -1,0 +1,41 @@
+#pragma once
+#include <vector>
+
+#include "softgrain/contact/delassus_system.hpp"
+
+namespace softgrain {
+
+/// A frictional contact problem by itself, without bodies: u = W p + q with Signorini's and Coulomb's laws.
+/// Local vectors are (normal, tangent) in 2D, (normal, tangent, tangent) in 3D, contact after contact.
+struct ContactProblem {
+  int dimension = 2;             ///< 2 or 3
+  std::vector<MatrixEntry> W;    ///< Delassus matrix [1/kg], dimension x contacts rows and columns
+  std::vector<double> q;         ///< free velocity [m/s], length dimension x contacts
+  std::vector<double> friction;  ///< mu >= 0 of each contact
+
+  int contacts() const { return static_cast<int>(friction.size()); }
+};
+
+enum class ContactMethod { nesterov, nlgs };
+
+struct ContactProblemOptions {
+  ContactMethod method = ContactMethod::nesterov;
+  double tolerance = 1e-8;  ///< on the natural-map residual over |q|
+  int max_sweeps = 100000;
+};
+
+/// The best iterate that was seen.
+struct ContactSolution {
+  std::vector<double> impulse;   ///< p [N s], not unique
+  std::vector<double> velocity;  ///< u = W p + q [m/s]
+  int sweeps = 0;                ///< sweeps of NLGS or iterations of Nesterov's method
+  double residual = 0;     ///< |natural map| / |q|, as Siconos' fc2d_compute_error and fc3d_compute_error
+  double energy = 0;       ///< 1/2 p.W p + q.p [J]
+  bool converged = false;  ///< residual <= tolerance
+};
+
+/// Solves from p = 0 until the tolerance, max_sweeps, or a residual that has not fallen for four fifths of
+/// all sweeps.
+ContactSolution solve_contact_problem(const ContactProblem& problem, const ContactProblemOptions& options);
+
+}  // namespace softgrain
