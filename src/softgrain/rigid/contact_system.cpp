@@ -34,17 +34,17 @@ template <int Dim>
 void signorini_offset(const RigidContacts<Dim>& contacts, std::span<const Vec<Dim>> velocity_start,
                       const ContactLaw& law, double dt, std::vector<double>& offset) {
   offset.resize(contacts.size());
+  const double open_rate = 1 / dt, closed_rate = law.push_out / dt;
+  for (int c = 0; c < contacts.size(); ++c)
+    offset[c] = contacts.gap[c] * (contacts.gap[c] > 0 ? open_rate : closed_rate);
+  if (law.activation == Activation::anticipated) return;
   for (int c = 0; c < contacts.size(); ++c) {
-    const double gap = contacts.gap[c];
-    if (gap > 0) {
-      offset[c] = law.activation == Activation::anticipated ? gap / dt : inactive_offset;
+    if (contacts.gap[c] > 0) {
+      offset[c] = inactive_offset;
       continue;
     }
-    offset[c] = law.push_out * gap / dt;
-    if (law.restitution > 0) {
-      const Vec<Dim> u = velocity_start[contacts.body_b[c]] - velocity_start[contacts.body_a[c]];
-      offset[c] += law.restitution * dot(contacts.normal[c], u);
-    }
+    const Vec<Dim> u = velocity_start[contacts.body_b[c]] - velocity_start[contacts.body_a[c]];
+    offset[c] += law.restitution * dot(contacts.normal[c], u);
   }
 }
 

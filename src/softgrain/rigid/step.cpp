@@ -118,15 +118,16 @@ StepReport RigidDynamics<Dim>::report(const SolverReport& solver) const {
                     .residual_mean = solver.residual_mean,
                     .residual_max = solver.residual_max,
                     .converged = solver.converged};
-  double overlap = 0;
+  double sum = 0, deepest = 0;
   for (int c = 0; c < contacts.size(); ++c) {
-    if (!(contacts.impulse[c][0] > 0)) continue;
-    ++report.contacts;
-    const double depth = std::max(0.0, -contacts.gap[c]) / mean_radius_;
-    overlap += depth;
-    report.overlap_max = std::max(report.overlap_max, depth);
+    const bool carries = contacts.impulse[c][0] > 0;
+    const double depth = carries ? std::max(0.0, -contacts.gap[c]) : 0;
+    report.contacts += carries ? 1 : 0;
+    sum += depth;
+    deepest = std::max(deepest, depth);
   }
-  if (report.contacts > 0) report.overlap_mean = overlap / report.contacts;
+  if (report.contacts > 0) report.overlap_mean = sum / (report.contacts * mean_radius_);
+  report.overlap_max = report.contacts > 0 ? deepest / mean_radius_ : 0;
   return report;
 }
 
