@@ -1,17 +1,20 @@
 #pragma once
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 namespace softgrain {
 
-/// Vector of N doubles; plain data, no allocation. v[0] is the first component.
-template <int N>
+/// Vector of N numbers; plain data, no allocation. v[0] is the first component. T is double, or lanes of
+/// doubles where several grains are worked on at once.
+template <int N, class T = double>
 struct Vec {
-  std::array<double, N> c{};
+  std::array<T, N> c{};
 
-  constexpr double& operator[](int k) { return c[static_cast<std::size_t>(k)]; }
-  constexpr const double& operator[](int k) const { return c[static_cast<std::size_t>(k)]; }
-  constexpr bool operator==(const Vec&) const = default;
+  constexpr T& operator[](int k) { return c[static_cast<std::size_t>(k)]; }
+  constexpr const T& operator[](int k) const { return c[static_cast<std::size_t>(k)]; }
+  constexpr bool operator==(const Vec&) const requires std::is_arithmetic_v<T>
+  = default;
 
   constexpr Vec& operator+=(const Vec& b) {
     for (int k = 0; k < N; ++k) (*this)[k] += b[k];
@@ -21,31 +24,31 @@ struct Vec {
     for (int k = 0; k < N; ++k) (*this)[k] -= b[k];
     return *this;
   }
-  constexpr Vec& operator*=(double s) {
+  constexpr Vec& operator*=(const T& s) {
     for (int k = 0; k < N; ++k) (*this)[k] *= s;
     return *this;
   }
 };
 
-template <int N>
-constexpr Vec<N> operator+(Vec<N> a, const Vec<N>& b) {
+template <int N, class T>
+constexpr Vec<N, T> operator+(Vec<N, T> a, const Vec<N, T>& b) {
   return a += b;
 }
-template <int N>
-constexpr Vec<N> operator-(Vec<N> a, const Vec<N>& b) {
+template <int N, class T>
+constexpr Vec<N, T> operator-(Vec<N, T> a, const Vec<N, T>& b) {
   return a -= b;
 }
-template <int N>
-constexpr Vec<N> operator-(const Vec<N>& a) {
-  return Vec<N>{} - a;
+template <int N, class T>
+constexpr Vec<N, T> operator-(const Vec<N, T>& a) {
+  return Vec<N, T>{} - a;
 }
-template <int N>
-constexpr Vec<N> operator*(double s, Vec<N> a) {
+template <int N, class T>
+constexpr Vec<N, T> operator*(const std::type_identity_t<T>& s, Vec<N, T> a) {
   return a *= s;
 }
-template <int N>
-constexpr double dot(const Vec<N>& a, const Vec<N>& b) {
-  double sum = 0;
+template <int N, class T>
+constexpr T dot(const Vec<N, T>& a, const Vec<N, T>& b) {
+  T sum{};
   for (int k = 0; k < N; ++k) sum += a[k] * b[k];
   return sum;
 }
@@ -61,24 +64,25 @@ constexpr Vec<3> cross(const Vec<3>& a, const Vec<3>& b) {
 constexpr Vec<2> perpendicular(const Vec<2>& a) { return {-a[1], a[0]}; }
 
 /// N x N matrix, row-major: m(i, j).
-template <int N>
+template <int N, class T = double>
 struct Mat {
-  std::array<double, N * N> c{};
+  std::array<T, N * N> c{};
 
-  constexpr double& operator()(int i, int j) { return c[static_cast<std::size_t>(i * N + j)]; }
-  constexpr double operator()(int i, int j) const { return c[static_cast<std::size_t>(i * N + j)]; }
-  constexpr bool operator==(const Mat&) const = default;
+  constexpr T& operator()(int i, int j) { return c[static_cast<std::size_t>(i * N + j)]; }
+  constexpr const T& operator()(int i, int j) const { return c[static_cast<std::size_t>(i * N + j)]; }
+  constexpr bool operator==(const Mat&) const requires std::is_arithmetic_v<T>
+  = default;
 
-  static constexpr Mat diagonal(const Vec<N>& d) {
+  static constexpr Mat diagonal(const Vec<N, T>& d) {
     Mat m;
     for (int k = 0; k < N; ++k) m(k, k) = d[k];
     return m;
   }
 };
 
-template <int N>
-constexpr Vec<N> operator*(const Mat<N>& m, const Vec<N>& a) {
-  Vec<N> b;
+template <int N, class T>
+constexpr Vec<N, T> operator*(const Mat<N, T>& m, const Vec<N, T>& a) {
+  Vec<N, T> b;
   for (int i = 0; i < N; ++i)
     for (int j = 0; j < N; ++j) b[i] += m(i, j) * a[j];
   return b;
