@@ -13,8 +13,11 @@ struct Vec {
 
   constexpr T& operator[](int k) { return c[static_cast<std::size_t>(k)]; }
   constexpr const T& operator[](int k) const { return c[static_cast<std::size_t>(k)]; }
-  constexpr bool operator==(const Vec&) const requires std::is_arithmetic_v<T>
-  = default;
+  constexpr bool operator==(const Vec& b) const {
+    for (std::size_t k = 0; k < c.size(); ++k)
+      if (!(c[k] == b.c[k])) return false;
+    return true;
+  }
 
   constexpr Vec& operator+=(const Vec& b) {
     for (int k = 0; k < N; ++k) (*this)[k] += b[k];
@@ -70,8 +73,11 @@ struct Mat {
 
   constexpr T& operator()(int i, int j) { return c[static_cast<std::size_t>(i * N + j)]; }
   constexpr const T& operator()(int i, int j) const { return c[static_cast<std::size_t>(i * N + j)]; }
-  constexpr bool operator==(const Mat&) const requires std::is_arithmetic_v<T>
-  = default;
+  constexpr bool operator==(const Mat& b) const {
+    for (std::size_t k = 0; k < c.size(); ++k)
+      if (!(c[k] == b.c[k])) return false;
+    return true;
+  }
 
   static constexpr Mat diagonal(const Vec<N, T>& d) {
     Mat m;
