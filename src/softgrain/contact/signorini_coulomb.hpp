@@ -13,7 +13,7 @@ Vec<Dim> project_on_coulomb_cone(Vec<Dim> p, double mu) {
   double tangential = 0;
   for (int k = 1; k < Dim; ++k) tangential += p[k] * p[k];
   tangential = std::sqrt(tangential);
-  if (tangential <= mu * p[0]) return p;
+  if (p[0] >= 0 && tangential <= mu * p[0]) return p;
   const double normal = std::max(0.0, (p[0] + mu * tangential) / (1 + mu * mu));
   p[0] = normal;
   for (int k = 1; k < Dim; ++k) p[k] *= tangential > 0 ? mu * normal / tangential : 0;
