@@ -48,7 +48,7 @@ struct Attraction {
 
  private:
   /// a0/r under overlap, else 1, without a square root: 1/sqrt(1 - y), y = max(0, 1 - r^2/a0^2), by two
-  /// Newton steps from 1 + y/2; exact to round-off for overlaps below 1 %, to 1e-8 at 10 %.
+  /// Newton steps from 1 + y/2; exact to round-off for overlaps below 1 %, to 2e-7 at 10 %.
   static Lanes overlap_factor(Lanes ratio_squared) {
     const Lanes x = min(ratio_squared, splat(1));
     Lanes root = 1.5 - 0.5 * x;
