@@ -58,7 +58,8 @@ void print_table(const SolveOptions& options, const Outcome& outcome) {
 
 void solve(SolveOptions& options) {
   options.solver.method = options.method == "nlgs" ? ContactMethod::nlgs : ContactMethod::nesterov;
-  Outcome outcome{.problem = read_fclib(options.path).problem};
+  Outcome outcome;
+  outcome.problem = read_fclib(options.path).problem;
   const std::clock_t start = std::clock();
   outcome.solution = solve_contact_problem(outcome.problem, options.solver);
   outcome.cpu_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
