@@ -46,9 +46,9 @@ std::string content_hash(const Datasets& datasets) {
     hash.add(path.c_str(), path.size() + 1);
     hash.add(array.values.index() == 0 ? "f" : "i", 1);
     std::visit(
-        [&](const auto& values) {
-          hash.add(values.size() / array.columns);
-          hash.add(array.columns);
+        [&hash, columns = array.columns](const auto& values) {
+          hash.add(values.size() / columns);
+          hash.add(columns);
           hash.add(values.data(), values.size() * sizeof values[0]);
         },
         array.values);

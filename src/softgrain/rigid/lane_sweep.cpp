@@ -14,7 +14,7 @@ struct LaneViolation {
   void add(Lanes square, Lanes p_n) {
     sum += square;
     max = square <= max ? max : square;  // keeps NaN
-    contacts += (p_n > 0) | (square > 0) ? splat(1) : splat(0);
+    contacts += ((p_n > 0) | (square > 0)) ? splat(1) : splat(0);
   }
   /// v_c = W dp / omega: what the contact would jump without relaxation.
   void add_to(Violation& violation, double relaxation) const {
