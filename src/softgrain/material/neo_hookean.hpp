@@ -6,7 +6,8 @@
 namespace softgrain {
 
 /// Compressible neo-Hookean law: psi = mu/2 (I1 - 3) - mu ln J + U(J), I1 = tr F^T F (3D; plane strain has
-/// F_33 = 1). The default: it stiffens under compression and never lets a point invert (with LogVolume).
+/// F_33 = 1). Stress and tangent are the innermost kernels, hence always_inline. The default: it stiffens
+/// under compression and never lets a point invert (with LogVolume).
 template <class Volume>
 struct NeoHookean {
   static constexpr bool needs_positive_J = true;
@@ -22,7 +23,7 @@ struct NeoHookean {
 
   /// First Piola-Kirchhoff stress P = dpsi/dF [Pa] = mu F + h cof F, h = U'(J) - mu / J.
   template <int Dim, class T>
-  Mat<Dim, T> stress(const Mat<Dim, T>& F) const {
+  [[gnu::always_inline]] Mat<Dim, T> stress(const Mat<Dim, T>& F) const {
     const T J = determinant(F);
     const T h = volumetric.derivative(J) - mu * (1.0 / J);
     const Mat<Dim, T> cof = cofactor(F);
@@ -33,7 +34,7 @@ struct NeoHookean {
 
   /// dP_iJ/dF_kL [Pa] at (i Dim + J, k Dim + L) = mu 1 + h' cof F (x) cof F + h d(cof F)/dF.
   template <int Dim, class T>
-  Mat<Dim * Dim, T> tangent(const Mat<Dim, T>& F) const {
+  [[gnu::always_inline]] Mat<Dim * Dim, T> tangent(const Mat<Dim, T>& F) const {
     const T J = determinant(F), inverse_J = 1.0 / J;
     const T h = volumetric.derivative(J) - mu * inverse_J;
     const T dh_dJ = volumetric.second_derivative(J) + mu * (inverse_J * inverse_J);
