@@ -9,7 +9,7 @@ namespace softgrain {
 
 double plate_travel(double strain, double grain_radius) { return 2 * grain_radius * (1 - std::exp(-strain)); }
 
-double grain_strain(double travel, double grain_radius) { return -std::log(1 - travel / (2 * grain_radius)); }
+double grain_strain(double travel, double grain_radius) { return -std::log1p(-travel / (2 * grain_radius)); }
 
 DiametralPath::DiametralPath(const Case::Loading& loading, double grain_radius, double dt) {
   require(loading.wall_velocity > 0, "loading.wall_velocity must be > 0, got {} m/s", loading.wall_velocity);
