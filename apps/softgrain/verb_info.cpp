@@ -159,14 +159,14 @@ void add_info_verb(CLI::App& app) {
     std::string path;
     bool json = false;
   };
-  auto* info = app.add_subcommand("info", "tell what a run's directory or a snapshot holds");
+  auto* info = app.add_subcommand("info", "Tell what a run's directory or a snapshot holds");
   auto arguments = std::make_shared<InfoArguments>();
   info->add_option("PATH", arguments->path, "a run's directory, or a snapshot (.h5)")->required();
   info->add_flag("--json", arguments->json, "for machines");
   info->footer("Example:\n  softgrain info squeeze/case_run");
   info->callback([arguments] { show_info(arguments->path, arguments->json); });
 
-  auto* verify = app.add_subcommand("verify", "check every snapshot of a run against its hash");
+  auto* verify = app.add_subcommand("verify", "Check every snapshot of a run against its hash");
   auto directory = std::make_shared<std::string>();
   verify->add_option("DIR", *directory, "a run's directory")->required();
   verify->footer("Example:\n  softgrain verify squeeze/case_run");

@@ -67,7 +67,7 @@ std::string closing_words(const RunRecord& record, const std::string& directory)
   const auto reached = verdict(record.report, record.tolerance);
   if (record.state == "done")
     return fmt::format("{}\nresults in {}; next: softgrain plot {}\n", reached, directory, directory);
-  return fmt::format("stopped {} at {:.1f} %: {}\nresults in {}; go on with: softgrain resume {}\n",
+  return fmt::format("stopped by {} at {:.1f} %: {}\nresults in {}; go on with: softgrain resume {}\n",
                      record.message, 100 * record.progress, reached, directory, directory);
 }
 
@@ -81,6 +81,7 @@ void carry_out(RunRequest request, const RunDirectory& directory, const RunOptio
   RunOutcome outcome;
   {
     Progress progress(options.quiet ? ProgressStyle::none : options.progress);
+    if (!options.quiet) progress.message("results go to " + directory.paths().root.string());
     outcome = record_run(*simulation, directory, request, progress, signals);
   }
   if (!options.quiet) print_result(closing_words(outcome.record, directory.paths().root.string()));
@@ -127,7 +128,7 @@ void resume_run(const RunOptions& options) {
 }  // namespace
 
 void add_run_verb(CLI::App& app) {
-  auto* run = app.add_subcommand("run", "carry out a case; results go to a directory");
+  auto* run = app.add_subcommand("run", "Carry out a case; its results go to a directory");
   auto arguments = std::make_shared<RunArguments>();
   add_case_arguments(*run, arguments->the_case);
   run->add_option("-o,--output", arguments->options.directory,
@@ -148,7 +149,7 @@ void add_run_verb(CLI::App& app) {
       "write a snapshot and go on.");
   run->callback([arguments] { run_case(*arguments); });
 
-  auto* again = app.add_subcommand("resume", "go on with a run that was stopped or killed");
+  auto* again = app.add_subcommand("resume", "Go on with a run that was stopped or killed");
   auto options = std::make_shared<RunOptions>();
   again->add_option("DIR", options->directory, "a run's directory")->required();
   add_run_options(*again, *options);

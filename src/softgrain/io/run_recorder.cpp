@@ -202,9 +202,10 @@ int RunRecorder::end(const Simulation& simulation) {
   const int signal = signals_.stop_signal();
   const bool done = simulation.finished();
   record_.state = done ? "done" : "stopped";
-  if (!done) record_.message = signal != 0 ? "by " + signal_name(signal) : "by its time limit";
+  if (!done) record_.message = signal != 0 ? signal_name(signal) : "time limit";
   write_record(simulation);
-  log(fmt::format("{} {}: {}", record_.state, record_.message, verdict(record_.report, record_.tolerance)));
+  log(fmt::format("{}: {}", done ? "done" : "stopped by " + record_.message,
+                  verdict(record_.report, record_.tolerance)));
   if (done) return 0;
   return signal != 0 ? exit_code_of(signal) : exit_requeue;
 }

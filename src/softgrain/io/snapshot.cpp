@@ -25,9 +25,9 @@ using Datasets = std::map<std::string, Array>;
 const std::string checkpoint_group = "/checkpoint/", particle_group = "/scene/particles/",
                   contact_group = "/scene/contacts/", walls_path = "/scene/walls", run_group = "/run/";
 
-class ContentHash {
+class Hash {
  public:
-  ContentHash() { XXH3_128bits_reset(&state_); }
+  Hash() { XXH3_128bits_reset(&state_); }
   void add(const void* data, std::size_t size) { XXH3_128bits_update(&state_, data, size); }
   void add(std::uint64_t number) { add(&number, sizeof number); }
   std::string digest() const {
@@ -39,9 +39,18 @@ class ContentHash {
   XXH3_state_t state_;
 };
 
+/// XXH3-128 of all bytes; it ends the file, so that a flipped bit is found wherever it lies.
+std::string file_hash(std::string_view bytes) {
+  Hash hash;
+  hash.add(bytes.data(), bytes.size());
+  return hash.digest();
+}
+
+constexpr std::size_t hash_length = 32;
+
 /// XXH3-128 over the datasets in the order of their paths: path, 0, 'f' or 'i', rows, columns, values.
 std::string content_hash(const Datasets& datasets) {
-  ContentHash hash;
+  Hash hash;
   for (const auto& [path, array] : datasets) {
     hash.add(path.c_str(), path.size() + 1);
     hash.add(array.values.index() == 0 ? "f" : "i", 1);
@@ -152,16 +161,20 @@ std::string encode_snapshot(const Snapshot& snapshot, const std::string& name) {
   for (const auto& [path, array] : datasets) file.write(path, array);
   file.write_attribute("content_hash", std::string_view(content_hash(datasets)));
   file.write_attribute("complete", std::int64_t{1});
-  return file.finish();
+  const std::string bytes = file.finish();
+  return bytes + file_hash(bytes);
 }
 
 Snapshot decode_snapshot(std::string_view bytes, const std::string& name) {
-  const Hdf5Reader file(bytes, name);
+  const auto contents = bytes.substr(0, bytes.size() - std::min(bytes.size(), hash_length));
+  if (bytes.substr(contents.size()) != file_hash(contents))
+    throw IoError(fmt::format("{}: not a snapshot, or a damaged one: the hash at its end is wrong", name));
+  const Hdf5Reader file(contents, name);
   check_format(file, name);
   Datasets datasets;
   for (const std::string& path : file.datasets()) datasets[path] = file.read(path);
   if (content_hash(datasets) != file.text_attribute("content_hash"))
-    throw IoError(fmt::format("{}: damaged: the content hash differs", name));
+    throw IoError(fmt::format("{}: damaged: its content hash is wrong", name));
   Snapshot snapshot = snapshot_of(datasets, name);
   snapshot.checkpoint.step = file.integer_attribute("step");
   snapshot.checkpoint.time = file.real_attribute("time");

@@ -33,8 +33,8 @@ struct Snapshot {
   double cpu_seconds = 0;
 };
 
-/// The bytes of an HDF5 file (docs/format.md) with a hash over its contents. `name` stands for it in
-/// messages.
+/// The bytes of an HDF5 file (docs/format.md) with a hash of its contents in it and a hash of all bytes
+/// behind it. `name` stands for it in messages.
 std::string encode_snapshot(const Snapshot& snapshot, const std::string& name);
 
 /// The inverse. Raises IoError when the bytes are not exactly what `encode_snapshot` wrote: cut short,
@@ -45,7 +45,7 @@ Snapshot decode_snapshot(std::string_view bytes, const std::string& name);
 void write_snapshot(const std::filesystem::path& path, const Snapshot& snapshot);
 Snapshot read_snapshot(const std::filesystem::path& path);
 
-/// Its time [s], without reading or checking the rest.
+/// Its time [s], without checking the rest.
 double snapshot_time(const std::filesystem::path& path);
 
 }  // namespace softgrain
