@@ -5,6 +5,7 @@
 
 #include <exception>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "softgrain/core/error.hpp"
@@ -84,7 +85,7 @@ int refuse_command_line(CLI::App& app, const CLI::ParseError& error) {
 }
 
 int run_program(int argc, char** argv) {
-  CLI::App app{"softgrain: simulation of soft granular matter"};
+  CLI::App app{"Simulation of soft granular matter", "softgrain"};
   const BuildInfo build = build_info();
   app.set_version_flag("--version", fmt::format("softgrain {} ({})", build.version, build.commit));
   app.require_subcommand(1);
@@ -99,7 +100,7 @@ int run_program(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return refuse_command_line(app, error);
   }
-  if (std::fflush(stdout) != 0) throw IoError("cannot write to stdout");
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw IoError("cannot write to stdout");
   return success;
 }
 
@@ -122,6 +123,9 @@ int main(int argc, char** argv) {
     print_error(fmt::format("error: {}", error.what()));
     return numerical;
   } catch (const IoError& error) {
+    print_error(fmt::format("error: {}", error.what()));
+    return input_output;
+  } catch (const std::system_error& error) {  // the file system's, and fmt's when stdout is full
     print_error(fmt::format("error: {}", error.what()));
     return input_output;
   } catch (const std::exception& error) {

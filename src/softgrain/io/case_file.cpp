@@ -3,9 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "softgrain/io/case_value.hpp"
@@ -47,12 +47,36 @@ class CaseReader {
   }
 
  private:
+  /// A line that is no TOML is reported and left out, so that one slip of the pen does not hide the other
+  /// errors.
   void read_file_text() {
-    try {
-      for (const TomlMember& member : parse_toml(text_)) read_table(member);
-    } catch (const TomlError& error) {
-      add({-1, error.at}, error.what());
+    std::string text(text_);
+    for (int attempt = 0; attempt < 20; ++attempt) {
+      try {
+        for (const TomlMember& member : parse_toml(text)) read_table(member);
+        return;
+      } catch (const TomlError& error) {
+        const std::string_view line = line_of(text, error.at.line);
+        add({-1, error.at}, error.what() + quotes_missing(line, error.what()));
+        if (line.starts_with('[') || line.find('=') == std::string_view::npos) return;
+        text.replace(static_cast<std::size_t>(line.data() - text.data()), line.size(), line.size(), ' ');
+      }
     }
+  }
+
+  static std::string_view line_of(std::string_view text, int number) {
+    if (number == 0) return "";
+    for (int line = 1; line < number; ++line) text.remove_prefix(std::min(text.size(), text.find('\n') + 1));
+    text = text.substr(0, text.find('\n'));
+    return text.substr(0, text.find('\r'));
+  }
+
+  /// The remedy for `radius = 5 mm`.
+  static std::string quotes_missing(std::string_view line, std::string_view message) {
+    if (!message.starts_with("expected")) return "";
+    const std::size_t value = line.find_first_not_of(" \t", line.find('=') + 1);
+    if (value == std::string_view::npos || !std::isdigit(static_cast<unsigned char>(line[value]))) return "";
+    return "; a quantity stands in quotes, as in \"5 mm\"";
   }
 
   void read_table(const TomlMember& member) {
@@ -74,7 +98,9 @@ class CaseReader {
     const std::string& argument = sets_[static_cast<std::size_t>(i)];
     const auto equals = argument.find('=');
     if (equals == std::string::npos) return add({i, {}}, "expected key=value, as in time.step=0.5e-6");
-    read_key(argument.substr(0, equals), value_of(argument.substr(equals + 1)), {i, {}});
+    std::string name = argument.substr(0, equals);
+    name.erase(name.find_last_not_of(' ') + 1);
+    read_key(name, value_of(argument.substr(equals + 1)), {i, {}});
   }
 
   /// TOML where it is TOML, otherwise the text itself: 0.05 us needs no quotes.
@@ -160,10 +186,7 @@ class CaseReader {
 
   /// The line of the file with a caret under the column; nothing where the line could harm a terminal.
   std::string source_line(TextPosition at) const {
-    std::string_view rest = text_;
-    for (int line = 1; line < at.line; ++line) rest.remove_prefix(std::min(rest.size(), rest.find('\n') + 1));
-    std::string_view line = rest.substr(0, rest.find('\n'));
-    if (line.ends_with('\r')) line.remove_suffix(1);
+    const std::string_view line = line_of(text_, at.line);
     if (!is_printable(line)) return "";
     std::string blank;  // a tab stays a tab, so that the caret stands where the terminal puts the column
     int column = 1;

@@ -111,15 +111,24 @@ struct Assign {
   }
 };
 
+/// Shortest digits that read back bit for bit; 1e-5, not 1e-05.
+std::string shortest(double number) {
+  std::string text = fmt::format("{}", number);
+  if (text == "-0") return "-0.0";  // TOML's integers have no negative zero
+  const auto exponent = text.find('e');
+  if (exponent != std::string::npos && text[exponent + 2] == '0') text.erase(exponent + 2, 1);
+  return text;
+}
+
 /// Shortest digits; always with a point or an exponent, so that TOML reads it as a float (-0.0 stays -0.0).
 std::string float_text(double number) {
-  const std::string text = fmt::format("{}", number);
+  const std::string text = shortest(number);
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
 /// `"5 mm"` where that reads back as exactly this number, otherwise the number in SI.
 std::string quantity_text(double number, std::string_view unit) {
-  if (unit.empty()) return fmt::format("{}", number);
+  if (unit.empty()) return shortest(number);
   const Unit parsed = parse_unit(unit);
   const std::string text = fmt::format("{:.15g} {}", in_unit(number, parsed), unit);
   return parse_quantity(text, parsed.dimension) == number ? fmt::format("\"{}\"", text)

@@ -133,7 +133,7 @@ bool Range::contains(double value) const {
 std::string Range::text() const {
   const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
   if (has_low && has_high)
-    return fmt::format("{}{}, {}{}", without_low ? '(' : '[', low, high, without_high ? ')' : ']');
+    return fmt::format("in {}{}, {}{}", without_low ? '(' : '[', low, high, without_high ? ')' : ']');
   if (has_low) return fmt::format("{} {}", without_low ? ">" : ">=", low);
   if (has_high) return fmt::format("{} {}", without_high ? "<" : "<=", high);
   return "";

@@ -18,7 +18,7 @@ struct Range {
   bool without_high = false;  ///< the upper bound itself is excluded
 
   bool contains(double value) const;
-  std::string text() const;  ///< "> 0", ">= 1", "[0, 1]", "(0, 2)", "" for all
+  std::string text() const;  ///< "> 0", ">= 1", "in [0, 1]", "in (0, 2)", "" for all
 };
 
 /// What a key takes: a range of numbers, or some words.

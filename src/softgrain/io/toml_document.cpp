@@ -72,6 +72,15 @@ TextPosition position(const toml::source_region& source) {
   return {static_cast<int>(source.begin.line), static_cast<int>(source.begin.column)};
 }
 
+/// "Error while parsing key-value pair: cannot redefine existing integer 'a'" without its beginning.
+std::string plain_words(std::string_view description) {
+  constexpr std::string_view beginning = "Error while parsing ";
+  if (description.starts_with(beginning)) description.remove_prefix(description.find(": ") + 2);
+  description = description.substr(0, description.find(" (TOML_"));
+  const bool twice = description.starts_with("cannot redefine");
+  return (twice ? "given twice: " : "") + std::string(description);
+}
+
 TomlValue::Table convert(const toml::table& table);
 
 TomlValue convert(const toml::node& node) {
@@ -113,7 +122,7 @@ TomlValue::Table parse_toml(std::string_view text) {
   try {
     return convert(toml::parse(text));
   } catch (const toml::parse_error& error) {
-    throw TomlError(position(error.source()), std::string(error.description()));
+    throw TomlError(position(error.source()), plain_words(error.description()));
   } catch (const std::logic_error&) {
     throw TomlError({}, "cannot be read as TOML");
   }

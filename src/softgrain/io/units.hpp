@@ -14,7 +14,7 @@ struct Dimension {
 };
 
 /// One unit = factor * 10^exponent in SI. The power of ten is kept apart so that "0.3 mm" reads as exactly
-/// the number 0.3e-3, correctly rounded.
+/// the number 0.9e-3, correctly rounded.
 struct Unit {
   Dimension dimension;
   int exponent = 0;

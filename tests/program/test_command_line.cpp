@@ -1,0 +1,168 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/subprocess.hpp"
+#include "support/temporary_directory.hpp"
+
+using softgrain::test::ProcessResult;
+using softgrain::test::read_text;
+using softgrain::test::TemporaryDirectory;
+
+namespace {
+
+ProcessResult softgrain_program(std::vector<std::string> arguments, const std::string& directory = "") {
+  arguments.insert(arguments.begin(), SOFTGRAIN_PROGRAM);
+  return softgrain::test::run(arguments, {}, directory);
+}
+
+bool mentions(const std::string& text, const std::string& word) {
+  return text.find(word) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("--version prints one line on stdout") {
+  const auto result = softgrain_program({"--version"});
+  CHECK(result.exit_code == 0);
+  CHECK(result.out.starts_with("softgrain 0."));
+  CHECK(std::count(result.out.begin(), result.out.end(), '\n') == 1);
+  CHECK(result.err.empty());
+}
+
+TEST_CASE("--help names the verbs, and every verb has an example") {
+  const auto result = softgrain_program({"--help"});
+  CHECK(result.exit_code == 0);
+  for (const std::string verb : {"new", "check", "schema", "doctor"}) {
+    CHECK(mentions(result.out, "  " + verb + " "));
+    const auto help = softgrain_program({verb, "--help"});
+    CHECK(help.exit_code == 0);
+    CHECK(mentions(help.out, "softgrain " + verb));
+    CHECK(mentions(help.out, "Example"));
+  }
+}
+
+TEST_CASE("a wrong command line ends with exit code 2, the nearest word, and an empty stdout") {
+  const struct {
+    std::vector<std::string> arguments;
+    std::string message;
+  } mistakes[] = {
+      {{}, "no verb given; one of: new, check"},
+      {{"chek"}, "unknown verb 'chek'; did you mean 'check'?"},
+      {{"check"}, "CASE is required"},
+      {{"check", "case.toml", "--sett", "a=1"}, "unknown option '--sett'; did you mean '--set'?"},
+      {{"check", "case.toml", "other.toml"}, "unexpected argument 'other.toml'"},
+      {{"check", "case.toml", "--set"}, "--set"},
+      {{"check", "none.toml"}, "none.toml"},
+      {{"new", "a", "--template", "diametral-bmp"}, "did you mean 'diametral-bpm'?"},
+      {{"--verson"}, "unknown option '--verson'; did you mean '--version'?"},
+  };
+  const TemporaryDirectory directory;
+  for (const auto& [arguments, message] : mistakes) {
+    const auto result = softgrain_program(arguments, directory.path().string());
+    CHECK(result.exit_code == 2);
+    CHECK(result.out.empty());
+    CHECK_MESSAGE(mentions(result.err, message), result.err);
+  }
+  CHECK(std::filesystem::is_empty(directory.path()));
+}
+
+TEST_CASE("new writes a case that check accepts, and never overwrites one") {
+  const TemporaryDirectory directory;
+  const std::string here = directory.path().string();
+  const auto made = softgrain_program({"new", "squeeze"}, here);
+  CHECK(made.exit_code == 0);
+  CHECK(made.out == "squeeze/case.toml\n");
+  const std::string text = read_text(directory.path() / "squeeze/case.toml");
+  CHECK(mentions(text, "radius = \"5 mm\""));
+  CHECK(softgrain_program({"check", "squeeze/case.toml"}, here).exit_code == 0);
+  directory.file("squeeze/case.toml", "mine");
+  const auto again = softgrain_program({"new", "squeeze"}, here);
+  CHECK(again.exit_code == 2);
+  CHECK(mentions(again.err, "exists already"));
+  CHECK(read_text(directory.path() / "squeeze/case.toml") == "mine");
+}
+
+TEST_CASE("new says 4 when the directory cannot be made") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("file", "");
+  CHECK(softgrain_program({"new", file + "/below"}).exit_code == 4);
+}
+
+TEST_CASE("check prints the resolved case on stdout and the estimate on stderr") {
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("case.toml", "[grain]\nradius = \"4 mm\"\n");
+  const auto first =
+      softgrain_program({"check", path, "--set", "time.step=0.1 us", "--set", "bpm.primaries=300"});
+  CHECK(first.exit_code == 0);
+  CHECK(mentions(first.out, "radius = 0.004  # m\n"));
+  CHECK(mentions(first.out, "step = 1e-7  # s\n"));
+  CHECK(mentions(first.err, "300 primary particles"));
+  CHECK(mentions(first.err, "time steps"));
+  const auto second = softgrain_program({"check", directory.file("resolved.toml", first.out)});
+  CHECK(second.out == first.out);
+}
+
+TEST_CASE("check --json gives the case and the estimate to machines") {
+  const TemporaryDirectory directory;
+  const auto result =
+      softgrain_program({"check", directory.file("case.toml", "grain.radius = 0.004"), "--json"});
+  CHECK(result.exit_code == 0);
+  const auto json = nlohmann::json::parse(result.out);
+  CHECK(json["case"]["grain"]["radius"] == 0.004);
+  CHECK(json["estimate"]["primaries"] == 1750);
+  CHECK(json["estimate"]["steps"] > 1000);
+}
+
+TEST_CASE("an invalid case gives all errors on stderr, exit code 2 and nothing else") {
+  const TemporaryDirectory directory;
+  directory.file("case.toml", "[grain]\ndensty = \"990 kg/m^3\"\nradius = \"5 s\"\n");
+  const auto result = softgrain_program({"check", "case.toml"}, directory.path().string());
+  CHECK(result.exit_code == 2);
+  CHECK(result.out.empty());
+  CHECK(result.err ==
+        "case.toml:2:1: error: unknown key 'grain.densty'; did you mean 'grain.density'?\n"
+        "    2 | densty = \"990 kg/m^3\"\n"
+        "      | ^\n"
+        "case.toml:3:10: error: grain.radius: unit 's' has the wrong dimension for a length [m]\n"
+        "    3 | radius = \"5 s\"\n"
+        "      |          ^\n"
+        "2 errors; nothing was run\n");
+}
+
+TEST_CASE("a hostile case file ends with exit code 2") {
+  const TemporaryDirectory directory;
+  using namespace std::string_literals;
+  for (const std::string& text :
+       {"[\0"s, "\xff\xfe\0\0"s, "\u03bc = 0.5"s, std::string(100000, '['), std::string(2'000'000, ' ')}) {
+    const auto result = softgrain_program({"check", directory.file("case.toml", text)});
+    CHECK(result.exit_code == 2);
+    CHECK(mentions(result.err, "error"));
+  }
+}
+
+TEST_CASE("schema prints JSON, and with --markdown the committed page") {
+  const auto result = softgrain_program({"schema"});
+  CHECK(result.exit_code == 0);
+  CHECK(nlohmann::json::parse(result.out)["properties"].contains("grain"));
+  CHECK(softgrain_program({"schema", "--markdown"}).out.starts_with("# Case file"));
+}
+
+TEST_CASE("doctor says what it finds, to people and to machines") {
+  const auto people = softgrain_program({"doctor"});
+  CHECK(people.exit_code == 0);
+  CHECK(mentions(people.out, "hdf5"));
+  const auto json = nlohmann::json::parse(softgrain_program({"doctor", "--json"}).out);
+  CHECK(json["version"]["ok"] == true);
+  CHECK(json["hdf5"]["value"].get<std::string>().starts_with("1."));
+}
+
+TEST_CASE("a full stdout is an input/output failure, exit code 4") {
+  const auto result =
+      softgrain::test::run({"/bin/sh", "-c", std::string(SOFTGRAIN_PROGRAM) + " schema > /dev/full"});
+  CHECK(result.exit_code == 4);
+}

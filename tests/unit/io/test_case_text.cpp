@@ -1,0 +1,108 @@
+#include <doctest/doctest.h>
+
+#include <bit>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "softgrain/io/case_file.hpp"
+#include "softgrain/io/case_text.hpp"
+#include "softgrain/io/schema.hpp"
+#include "support/temporary_directory.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+std::vector<std::uint64_t> bits(double value) { return {std::bit_cast<std::uint64_t>(value)}; }
+std::vector<std::uint64_t> bits(const std::vector<double>& values) {
+  std::vector<std::uint64_t> all;
+  for (const double value : values) all.push_back(std::bit_cast<std::uint64_t>(value));
+  return all;
+}
+template <class T>
+T bits(const T& value) {
+  return value;
+}
+
+void check_equal(Case a, Case b) {
+  for (const Key& key : case_keys())
+    std::visit([&](auto member) { CHECK_MESSAGE(bits(member(a)) == bits(member(b)), key.name); }, key.member);
+}
+
+Case unusual_case() {
+  Case c;
+  c.grain.radius = 0.1 + 0.2;
+  c.grain.density = 1.0 / 3;
+  c.bpm.attraction = 1e22;
+  c.bpm.primaries = 301;
+  c.contact.friction = -0.0;
+  c.contact.wall_friction = 5e-324;
+  c.contact.activation = "closed_at_mid_step";
+  c.contact.push_out = std::nextafter(0.1, 1);
+  c.loading.unload_at = {0.1 * 3, 1.0 / 3};
+  c.time.step = 0.7e-6;
+  c.sample.seed = 9007199254740993;  // not a double
+  c.output.vtk = false;
+  return c;
+}
+
+}  // namespace
+
+TEST_CASE("the resolved case reads back bit for bit") {
+  for (const Case& c : {Case{}, unusual_case()})
+    check_equal(parse_case(resolved_case_text(c), "resolved.toml"), c);
+}
+
+TEST_CASE("the commented case reads back bit for bit") {
+  for (const Case& c : {Case{}, unusual_case()})
+    check_equal(parse_case(commented_case_text(c), "case.toml"), c);
+}
+
+TEST_CASE("the commented case is written as people write it") {
+  const std::string text = commented_case_text(Case{});
+  CHECK(text.find("radius = \"5 mm\"\n") != std::string::npos);
+  CHECK(text.find("attraction = \"100 N/m\"\n") != std::string::npos);
+  CHECK(text.find("unload_at = [0.1, 0.3]\n") != std::string::npos);
+}
+
+TEST_CASE("every key lies in a table of its own list, once, and its default is allowed") {
+  std::set<std::string> tables, names;
+  for (const TableOfKeys& table : case_tables()) tables.insert(table.name);
+  for (const Key& key : case_keys()) {
+    CHECK_MESSAGE(tables.contains(key.table()), key.name);
+    CHECK_MESSAGE(names.insert(key.name).second, key.name);
+    CHECK_MESSAGE(!key.text.empty(), key.name);
+  }
+  for (const Relation& relation : case_relations())
+    for (const std::string& key : relation.keys) CHECK_MESSAGE(names.contains(key), key);
+}
+
+TEST_CASE("the JSON Schema knows every key of a case, and no other") {
+  const auto schema = nlohmann::json::parse(case_json_schema());
+  CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
+  CHECK(schema["additionalProperties"] == false);
+  const auto resolved = nlohmann::json::parse(case_json(Case{}));
+  CHECK(resolved.size() == schema["properties"].size());
+  for (const auto& [name, table] : resolved.items()) {
+    const auto& described = schema["properties"][name];
+    CHECK(described["additionalProperties"] == false);
+    CHECK(described["properties"].size() == table.size());
+    for (const auto& [key, value] : table.items()) CHECK_MESSAGE(described["properties"].contains(key), key);
+  }
+  const auto& relaxation = schema["properties"]["solver"]["properties"]["relaxation"];
+  CHECK(relaxation["anyOf"][0]["exclusiveMaximum"] == 2);
+  CHECK(schema["properties"]["bpm"]["properties"]["primaries"]["type"] == "integer");
+}
+
+TEST_CASE("the committed reference page is what the program writes") {
+  const std::string committed = test::read_text(SOFTGRAIN_SOURCE_DIR "/docs/reference/case-file.md");
+  CHECK_MESSAGE(committed == case_reference_page(),
+                "run: softgrain schema --markdown > docs/reference/case-file.md");
+}
+
+TEST_CASE("the experiments' case files are valid") {
+  CHECK_NOTHROW(read_case(SOFTGRAIN_SOURCE_DIR "/experiments/diametral_bpm/case.toml"));
+}
