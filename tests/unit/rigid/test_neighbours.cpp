@@ -1,0 +1,151 @@
+#include <doctest/doctest.h>
+
+#include <map>
+#include <set>
+#include <utility>
+
+#include "softgrain/rigid/neighbours.hpp"
+#include "support/random_bodies.hpp"
+
+using namespace softgrain;
+using test::Plane;
+using test::Space;
+
+namespace {
+
+using PairSet = std::set<std::pair<int, int>>;
+
+template <int Dim>
+PairSet listed_pairs(const RigidContacts<Dim>& contacts) {
+  PairSet pairs;
+  for (int c = 0; c < contacts.size(); ++c) pairs.emplace(contacts.body_a[c], contacts.body_b[c]);
+  return pairs;
+}
+
+template <int Dim>
+PairSet pairs_within(const RigidParticles<Dim>& bodies, double gap) {
+  PairSet pairs;
+  for (int i = 0; i < bodies.size(); ++i) {
+    for (int j = i + 1; j < bodies.size(); ++j)
+      if (norm(bodies.position[j] - bodies.position[i]) - bodies.radius[i] - bodies.radius[j] < gap)
+        pairs.emplace(i, j);
+    for (int w = 0; w < Dim; ++w)  // random_bodies has wall w at x_w = 0
+      if (bodies.position[i][w] - bodies.radius[i] < gap) pairs.emplace(i, bodies.wall_body(w));
+  }
+  return pairs;
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("candidate contacts are the pairs and walls closer than the skin", Dimension, Plane,
+                   Space) {
+  constexpr int Dim = Dimension::value;
+  const test::ContactScene<Dim> scene(Dim == 2 ? 12 : 6);
+  CHECK(listed_pairs(scene.contacts) == pairs_within(scene.bodies, 0.2));
+  CHECK(static_cast<int>(listed_pairs(scene.contacts).size()) == scene.contacts.size());
+  for (int c = 0; c < scene.contacts.size(); ++c) {
+    const int a = scene.contacts.body_a[c], b = scene.contacts.body_b[c];
+    CHECK(a < b);
+    CHECK(scene.contacts.inverse_mass_a[c] == 1 / scene.bodies.mass[a]);
+    CHECK(scene.contacts.inverse_mass_b[c] == (b < scene.bodies.size() ? 1 / scene.bodies.mass[b] : 0));
+    CHECK(scene.contacts.friction[c] == test::mixed_friction(a, b));
+  }
+}
+
+TEST_CASE_TEMPLATE("no two contacts of a batch share a particle, and frictional batches come last", Dimension,
+                   Plane, Space) {
+  constexpr int Dim = Dimension::value;
+  const test::ContactScene<Dim> scene(Dim == 2 ? 12 : 6);
+  const auto& contacts = scene.contacts;
+  int next = 0;
+  bool friction_begun = false;
+  for (const ContactBatch& batch : contacts.batches) {
+    CHECK(batch.begin == next);
+    next = batch.end;
+    std::set<int> particles;
+    for (int c = batch.begin; c < batch.end; ++c) {
+      CHECK(particles.insert(contacts.body_a[c]).second);
+      if (contacts.body_b[c] < scene.bodies.size()) CHECK(particles.insert(contacts.body_b[c]).second);
+      CHECK((contacts.friction[c] > 0) == batch.frictional);
+    }
+    CHECK((batch.frictional || !friction_begun));
+    friction_begun = batch.frictional;
+  }
+  CHECK(next == contacts.size());
+  CHECK(friction_begun);
+}
+
+TEST_CASE("the order of the contacts depends on the reference alone") {
+  test::ContactScene<2> scene(12);
+  NeighbourReference<2> reference{.skin = 0.2, .position = {}, .wall_point = {}};
+  set_reference(reference, scene.bodies);
+  drift(scene.bodies, 0.05);
+  const auto later = candidate_contacts(scene.bodies, reference, test::mixed_friction, scene.contacts);
+  CHECK(later.body_a == scene.contacts.body_a);
+  CHECK(later.body_b == scene.contacts.body_b);
+}
+
+TEST_CASE_TEMPLATE("impulses follow their two bodies from list to list", Dimension, Plane, Space) {
+  constexpr int Dim = Dimension::value;
+  test::ContactScene<Dim> scene(Dim == 2 ? 12 : 6);
+  test::RandomNumbers random(3);
+  std::map<std::pair<int, int>, Vec<Dim>> kept;
+  for (int c = 0; c < scene.contacts.size(); ++c) {
+    Vec<Dim>& p = scene.contacts.impulse[c];
+    p = random.vector<Dim>(1);
+    p[0] = random.uniform(0.1, 1);
+    kept[{scene.contacts.body_a[c], scene.contacts.body_b[c]}] = p;
+  }
+  for (Vec<Dim>& v : scene.bodies.velocity) v = random.vector<Dim>(1);
+  drift(scene.bodies, 0.1);
+  NeighbourReference<Dim> reference{.skin = 0.2, .position = {}, .wall_point = {}};
+  set_reference(reference, scene.bodies);
+  const auto next = candidate_contacts(scene.bodies, reference, test::mixed_friction, scene.contacts);
+  int carried = 0, fresh = 0;
+  for (int c = 0; c < next.size(); ++c) {
+    const auto old = kept.find({next.body_a[c], next.body_b[c]});
+    CHECK(next.impulse[c] == (old == kept.end() ? Vec<Dim>{} : old->second));
+    ++(old == kept.end() ? fresh : carried);
+  }
+  CHECK(carried > 10);
+  CHECK(fresh > 3);
+}
+
+TEST_CASE("lists are made again once something has moved by 45 % of the skin, walls included") {
+  auto bodies = test::random_bodies<2>(5, 2);
+  NeighbourReference<2> reference{.skin = 2, .position = {}, .wall_point = {}};
+  CHECK(needs_rebuild(reference, bodies));  // never made
+  const int generation = reference.generation;
+  set_reference(reference, bodies);
+  CHECK(reference.generation > generation);
+  CHECK_FALSE(needs_rebuild(reference, bodies));
+
+  const auto at_rest = bodies;
+  bodies.position[7] += Vec<2>{0.89 * 0.6, 0.89 * 0.8};
+  CHECK_FALSE(needs_rebuild(reference, bodies));
+  bodies.position[7] = at_rest.position[7] - Vec<2>{0.91 * 0.6, 0.91 * 0.8};
+  CHECK(needs_rebuild(reference, bodies));
+
+  bodies = at_rest;
+  bodies.walls[1].point[1] += 0.89;
+  CHECK_FALSE(needs_rebuild(reference, bodies));
+  bodies.walls[1].point[1] += 0.02;
+  CHECK(needs_rebuild(reference, bodies));
+}
+
+TEST_CASE("gaps and normals lead from a to b, and from a particle into its wall") {
+  auto bodies = rigid_particles<2>({{0, 0}, {3, 4}}, {1, 2}, {1, 1},
+                                   {{.point = {9, -1.5}, .normal = {0, 1}, .velocity = {}}});
+  NeighbourReference<2> reference{.skin = 2.5, .position = {}, .wall_point = {}};
+  set_reference(reference, bodies);
+  auto contacts = candidate_contacts<2>(bodies, reference, [](int, int) { return 0.0; }, {});
+  detect_contacts(bodies, contacts);
+  REQUIRE(contacts.size() == 2);
+  const int pair = contacts.body_b[0] == 1 ? 0 : 1, wall = 1 - pair;
+  CHECK(contacts.gap[pair] == doctest::Approx(2).epsilon(1e-15));
+  CHECK(contacts.normal[pair][0] == doctest::Approx(0.6).epsilon(1e-15));
+  CHECK(contacts.normal[pair][1] == doctest::Approx(0.8).epsilon(1e-15));
+  CHECK(contacts.body_b[wall] == bodies.wall_body(0));
+  CHECK(contacts.gap[wall] == doctest::Approx(0.5).epsilon(1e-15));
+  CHECK(contacts.normal[wall] == Vec<2>{0, -1});
+}
