@@ -1,0 +1,191 @@
+#include "softgrain/math/block_cholesky.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+namespace softgrain {
+namespace {
+
+using Block = std::array<Wide, 4>;
+
+/// Minimum degree on the first nodes, then the kept ones; `graph` becomes the pattern of the factor. Returns
+/// the nodes in the order of elimination.
+std::vector<int> eliminate(std::vector<std::set<int>>& graph, int kept) {
+  const int n = static_cast<int>(graph.size());
+  std::vector<int> sequence;
+  std::vector<char> done(n, 0);
+  std::vector<std::set<int>> below(n);
+  for (int step = 0; step < n; ++step) {
+    int next = n - kept + (step - (n - kept));
+    if (step < n - kept) {
+      next = -1;
+      for (int i = 0; i < n - kept; ++i)
+        if (done[i] == 0 && (next < 0 || graph[i].size() < graph[next].size())) next = i;
+    }
+    for (const int i : graph[next]) {
+      graph[i].erase(next);
+      for (const int j : graph[next])
+        if (i != j) graph[i].insert(j);
+    }
+    done[next] = 1;
+    below[next] = graph[next];
+    sequence.push_back(next);
+  }
+  graph = std::move(below);
+  return sequence;
+}
+
+/// C -= A B^T for 2 x 2 blocks.
+inline void subtract_product(Block& C, const Block& A, const Block& B) {
+  C[0] -= A[0] * B[0] + A[1] * B[1];
+  C[1] -= A[0] * B[2] + A[1] * B[3];
+  C[2] -= A[2] * B[0] + A[3] * B[1];
+  C[3] -= A[2] * B[2] + A[3] * B[3];
+}
+
+}  // namespace
+
+BlockPattern::BlockPattern(int nodes, std::span<const std::array<int, 2>> edges, int kept)
+    : kept_(kept), order_(nodes) {
+  std::vector<std::set<int>> graph(nodes);
+  for (const auto& [i, j] : edges) {
+    if (i == j) continue;
+    graph[i].insert(j);
+    graph[j].insert(i);
+  }
+  const std::vector<int> sequence = eliminate(graph, kept);
+  for (int k = 0; k < nodes; ++k) order_[sequence[k]] = k;
+  column_begin_.push_back(0);
+  std::vector<std::vector<int>> left(nodes);
+  for (int k = 0; k < nodes; ++k) {
+    std::vector<int> rows{k};
+    for (const int i : graph[sequence[k]]) rows.push_back(order_[i]);
+    std::sort(rows.begin() + 1, rows.end());
+    for (const int i : rows) {
+      if (i != k) left[i].push_back(blocks());
+      row_.push_back(i);
+      column_of_.push_back(k);
+    }
+    column_begin_.push_back(blocks());
+  }
+  left_begin_.push_back(0);
+  for (const auto& list : left) {
+    left_.insert(left_.end(), list.begin(), list.end());
+    left_begin_.push_back(static_cast<int>(left_.size()));
+  }
+}
+
+int BlockPattern::block(int node_i, int node_j) const {
+  const int column = std::min(order_[node_i], order_[node_j]), row = std::max(order_[node_i], order_[node_j]);
+  const auto begin = row_.begin() + column_begin_[column], end = row_.begin() + column_begin_[column + 1];
+  const auto found = std::lower_bound(begin, end, row);
+  assert(found != end && *found == row);
+  return static_cast<int>(found - row_.begin());
+}
+
+BatchedCholesky::BatchedCholesky(const BlockPattern& pattern)
+    : pattern_(pattern), value_(pattern.blocks()), place_(pattern.nodes()), scratch_(2 * pattern.nodes()) {}
+
+void BatchedCholesky::clear() { std::fill(value_.begin(), value_.end(), Block{}); }
+
+void BatchedCholesky::add(int node_i, int node_j, const Block& block) {
+  const bool flip = pattern_.transposed(node_i, node_j);
+  add_block(pattern_.block(node_i, node_j), flip ? Block{block[0], block[2], block[1], block[3]} : block);
+}
+
+void BatchedCholesky::add_block(int block, const Block& value) {
+  for (int k = 0; k < 4; ++k) value_[block][k] += value[k];
+}
+
+/// Left-looking by columns. A diagonal block holds {1/l11, -, l21, 1/l22} of its 2 x 2 factor.
+unsigned BatchedCholesky::factor() {
+  const std::vector<int>&begin = pattern_.column_begin_, &row = pattern_.row_;
+  const std::vector<int>&left_begin = pattern_.left_begin_, &left = pattern_.left_;
+  unsigned failed = 0;
+  for (int k = 0; k < pattern_.nodes(); ++k) {
+    for (int s = begin[k]; s < begin[k + 1]; ++s) place_[row[s]] = s;
+    // A_ik -= sum_j L_ij L_kj^T
+    for (int l = left_begin[k]; l < left_begin[k + 1]; ++l) {
+      const int first = left[l];
+      const Block L_kj = value_[first];
+      const int end = begin[pattern_.column_of_[first] + 1];
+      for (int s = first; s < end; ++s) subtract_product(value_[place_[row[s]]], value_[s], L_kj);
+    }
+    Block& diagonal = value_[begin[k]];
+    const Wide l11 = sqrt(diagonal[0]), r11 = 1 / l11, l21 = diagonal[2] * r11;
+    const Wide l22 = sqrt(diagonal[3] - l21 * l21), r22 = 1 / l22;
+    for (int lane = 0; lane < Wide::size; ++lane)
+      if (!(l11[lane] > 0 && l22[lane] > 0)) failed |= 1u << lane;
+    diagonal = {r11, Wide{}, l21, r22};
+    // L_ik = A_ik L_kk^-T
+    for (int s = begin[k] + 1; s < begin[k + 1]; ++s) {
+      Block& A = value_[s];
+      const Wide a = A[0] * r11, c = A[2] * r11;
+      A = {a, (A[1] - a * l21) * r22, c, (A[3] - c * l21) * r22};
+    }
+  }
+  return failed;
+}
+
+/// y <- L^-1 y from elimination place `first` on.
+void BatchedCholesky::forward(Wide* y, int first) const {
+  const std::vector<int>&begin = pattern_.column_begin_, &row = pattern_.row_;
+  for (int k = first; k < pattern_.nodes(); ++k) {
+    const Block& diagonal = value_[begin[k]];
+    const Wide y0 = y[2 * k] * diagonal[0], y1 = (y[2 * k + 1] - diagonal[2] * y0) * diagonal[3];
+    y[2 * k] = y0, y[2 * k + 1] = y1;
+    for (int s = begin[k] + 1; s < begin[k + 1]; ++s) {
+      const Block& L = value_[s];
+      y[2 * row[s]] -= L[0] * y0 + L[1] * y1;
+      y[2 * row[s] + 1] -= L[2] * y0 + L[3] * y1;
+    }
+  }
+}
+
+/// y <- L^-T y down to elimination place `first`.
+void BatchedCholesky::backward(Wide* y, int first) const {
+  const std::vector<int>&begin = pattern_.column_begin_, &row = pattern_.row_;
+  for (int k = pattern_.nodes() - 1; k >= first; --k) {
+    Wide y0 = y[2 * k], y1 = y[2 * k + 1];
+    for (int s = begin[k] + 1; s < begin[k + 1]; ++s) {
+      const Block& L = value_[s];
+      const Wide z0 = y[2 * row[s]], z1 = y[2 * row[s] + 1];
+      y0 -= L[0] * z0 + L[2] * z1;
+      y1 -= L[1] * z0 + L[3] * z1;
+    }
+    const Block& diagonal = value_[begin[k]];
+    y[2 * k + 1] = y1 * diagonal[3];
+    y[2 * k] = (y0 - diagonal[2] * y[2 * k + 1]) * diagonal[0];
+  }
+}
+
+void BatchedCholesky::solve(std::span<Wide> x) const {
+  Wide* y = scratch_.data();
+  for (int i = 0; i < pattern_.nodes(); ++i)
+    for (int d = 0; d < 2; ++d) y[2 * pattern_.order_[i] + d] = x[2 * i + d];
+  forward(y, 0);
+  backward(y, 0);
+  for (int i = 0; i < pattern_.nodes(); ++i)
+    for (int d = 0; d < 2; ++d) x[2 * i + d] = y[2 * pattern_.order_[i] + d];
+}
+
+/// Column by column of the identity; only the end of the factor takes part, and rows above the column follow
+/// by symmetry.
+void BatchedCholesky::kept_inverse(std::span<Wide> inverse) const {
+  const int n = pattern_.nodes(), kept = pattern_.kept_, first = n - kept;
+  Wide* y = scratch_.data();
+  for (int column = 0; column < 2 * kept; ++column) {
+    const int node = column / 2;
+    std::fill(y + 2 * (first + node), y + 2 * n, Wide{});
+    y[2 * first + column] = 1.0;
+    forward(y, first + node);
+    backward(y, first + node);
+    for (int k = 2 * node; k < 2 * kept; ++k)
+      inverse[k * 2 * kept + column] = inverse[column * 2 * kept + k] = y[2 * first + k];
+  }
+}
+
+}  // namespace softgrain
