@@ -34,7 +34,7 @@ TEST_CASE("seed, stream and index each lead to other numbers with all their bits
     for (std::size_t j = 0; j < i; ++j) CHECK(numbers[i] != numbers[j]);
 }
 
-TEST_CASE("uniform numbers lie in [0 1) with mean 1/2 and variance 1/12") {
+TEST_CASE("uniform numbers lie between 0 and 1 with mean 1/2 and variance 1/12") {
   const int count = 100000;
   double sum = 0, squares = 0;
   for (int i = 0; i < count; ++i) {
