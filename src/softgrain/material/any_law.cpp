@@ -1,0 +1,54 @@
+#include "softgrain/material/any_law.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "softgrain/material/elastic_law.hpp"
+
+namespace softgrain {
+
+namespace {
+template <class... Laws>
+constexpr bool all_elastic(const std::variant<Laws...>*) {
+  return ((ElasticLaw<Laws, 2> && ElasticLaw<Laws, 3>)&&...);
+}
+static_assert(all_elastic(static_cast<const AnyLaw*>(nullptr)));
+
+template <auto factory>
+AnyLaw make(double E, double nu) {
+  return factory(E, nu);
+}
+}  // namespace
+
+const std::array<LawChoice, 6>& law_choices() {
+  static constexpr std::array<LawChoice, 6> choices{{
+      {"neo_hookean", "neo-Hookean, lambda/2 (ln J)^2 for the volume", "", make<neo_hookean>},
+      {"neo_hookean_quadratic", "neo-Hookean, lambda/2 (J - 1)^2 for the volume: faster, softer when crushed",
+       "", make<neo_hookean_quadratic>},
+      {"hencky", "Hooke's law in logarithmic strains", "", make<hencky>},
+      {"corotated", "Hooke's law in the turned frame", "", make<corotated>},
+      {"small_strain_hooke", "Hooke's law in the small strain",
+       "small_strain_hooke takes rotations for strains: only for grains that neither turn nor deform much",
+       make<small_strain_hooke>},
+      {"st_venant_kirchhoff", "Hooke's law in Green's strain",
+       "st_venant_kirchhoff softens under compression and turns points inside out in dense packings: only to "
+       "compare with the paper's Fig. 1",
+       make<st_venant_kirchhoff>},
+  }};
+  return choices;
+}
+
+const LawChoice& law_choice(std::string_view name) {
+  const auto& choices = law_choices();
+  const auto found =
+      std::find_if(choices.begin(), choices.end(), [&](const auto& c) { return c.name == name; });
+  std::string names;
+  for (const LawChoice& choice : choices)
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", choice.name);
+  require(found != choices.end(), "unknown elastic law '{}'; the laws are {}", name, names);
+  return *found;
+}
+
+AnyLaw make_law(std::string_view name, double E, double nu) { return law_choice(name).make(E, nu); }
+
+}  // namespace softgrain

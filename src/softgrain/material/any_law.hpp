@@ -1,0 +1,36 @@
+#pragma once
+#include <array>
+#include <string_view>
+#include <variant>
+
+#include "softgrain/material/corotated.hpp"
+#include "softgrain/material/hencky.hpp"
+#include "softgrain/material/neo_hookean.hpp"
+#include "softgrain/material/small_strain_hooke.hpp"
+#include "softgrain/material/st_venant_kirchhoff.hpp"
+
+namespace softgrain {
+
+/// A law chosen at run time: std::visit it once outside the loop over points.
+using AnyLaw = std::variant<NeoHookean<LogVolume>, NeoHookean<QuadraticVolume>, Hencky, Corotated,
+                            SmallStrainHooke, StVenantKirchhoff>;
+
+/// A law by its name in case files.
+struct LawChoice {
+  std::string_view name;
+  std::string_view text;     ///< what it is, for the documentation of the key
+  std::string_view caution;  ///< what the user must be told who chooses it; empty: nothing
+  AnyLaw (*make)(double E, double nu);
+};
+
+/// All laws, the default first.
+const std::array<LawChoice, 6>& law_choices();
+
+/// The choice of that name; UsageError naming all of them if there is none.
+const LawChoice& law_choice(std::string_view name);
+
+/// The law of that name from Young's modulus E [Pa] and Poisson's ratio nu; UsageError as law_choice and
+/// lame.
+AnyLaw make_law(std::string_view name, double E, double nu);
+
+}  // namespace softgrain
