@@ -258,6 +258,8 @@ void BpmCompression::restore(const Checkpoint& state) {
   // the lists are a function of the reference, so they come back in the same order
   ++dynamics_.reference.generation;
   dynamics_.rebuild_contacts();
+  detect_contacts(particles, dynamics_.contacts);
+  attraction_.update(particles, dynamics_.reference);
   from_array<2>(state, "contact_impulse", dynamics_.contacts.impulse);
   std::vector<Vec<1>> sums(6);
   from_array<1>(state, "sums", sums);
