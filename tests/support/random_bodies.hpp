@@ -1,16 +1,13 @@
 #pragma once
-#include <type_traits>
 #include <vector>
 
 #include "softgrain/rigid/contact_system.hpp"
 #include "softgrain/rigid/neighbours.hpp"
 #include "softgrain/rigid/particles.hpp"
+#include "support/dimensions.hpp"
 #include "support/random_numbers.hpp"
 
 namespace softgrain::test {
-
-using Plane = std::integral_constant<int, 2>;
-using Space = std::integral_constant<int, 3>;
 
 /// Bodies with random radii about 1, masses, velocities and spins on a jittered square (cubic) lattice of
 /// spacing 2, so that some neighbours overlap and others do not, in a corner of Dim moving walls.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "softgrain/geometry/cell_grid.hpp"
+#include "support/dimensions.hpp"
 #include "support/random_numbers.hpp"
 
 using namespace softgrain;
@@ -63,8 +64,8 @@ std::vector<Vec<Dim>> random_points(int count, double size) {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("the grid finds the close pairs that brute force finds", Dimension,
-                   std::integral_constant<int, 2>, std::integral_constant<int, 3>) {
+TEST_CASE_TEMPLATE("the grid finds the close pairs that brute force finds", Dimension, test::Plane,
+                   test::Space) {
   constexpr int Dim = Dimension::value;
   for (const double reach : {0.05, 0.2, 0.7, 5.0}) {
     CAPTURE(reach);
@@ -72,16 +73,14 @@ TEST_CASE_TEMPLATE("the grid finds the close pairs that brute force finds", Dime
   }
 }
 
-TEST_CASE_TEMPLATE("far outliers neither cost memory nor hide a pair", Dimension,
-                   std::integral_constant<int, 2>, std::integral_constant<int, 3>) {
+TEST_CASE_TEMPLATE("far outliers neither cost memory nor hide a pair", Dimension, test::Plane, test::Space) {
   constexpr int Dim = Dimension::value;
   auto x = random_points<Dim>(200, 1);
   for (const double far : {1e3, -1e9, 1e15}) x.push_back(far * x[0]);
   check_pairs(x, 0.1);
 }
 
-TEST_CASE_TEMPLATE("coincident points are pairs like all others", Dimension, std::integral_constant<int, 2>,
-                   std::integral_constant<int, 3>) {
+TEST_CASE_TEMPLATE("coincident points are pairs like all others", Dimension, test::Plane, test::Space) {
   constexpr int Dim = Dimension::value;
   check_pairs(std::vector<Vec<Dim>>(20), 0.1);
   auto x = random_points<Dim>(50, 1);

@@ -1,0 +1,214 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/experiment/bpm_compression.hpp"
+#include "softgrain/experiment/create.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+/// A small grain under a plate so fast that the lists of pairs are made again about every 80 steps.
+Case small_case() {
+  Case c;
+  c.bpm.primaries = 60;
+  c.loading = {.wall_velocity = 4, .max_strain = 0.1, .unload_at = {}};
+  return c;
+}
+
+void advance(Simulation& simulation, int steps) {
+  for (int k = 0; k < steps; ++k) simulation.step();
+}
+
+void check_same_row(Simulation& a, Simulation& b) {
+  const auto row_a = a.observe(), row_b = b.observe();
+  REQUIRE(row_a.size() == row_b.size());
+  for (std::size_t k = 0; k < row_a.size(); ++k) {
+    CAPTURE(row_a[k].name);
+    CHECK(row_a[k].name == row_b[k].name);
+    CHECK(row_a[k].value == row_b[k].value);
+  }
+}
+
+void check_same_state(const Simulation& a, const Simulation& b) {
+  const Checkpoint x = a.checkpoint(), y = b.checkpoint();
+  CHECK(x.step == y.step);
+  CHECK(x.time == y.time);
+  REQUIRE(x.arrays.size() == y.arrays.size());
+  for (const auto& [name, array] : x.arrays) {
+    CAPTURE(name);
+    REQUIRE(y.arrays.contains(name));
+    CHECK(array.columns == y.arrays.at(name).columns);
+    CHECK((array.values == y.arrays.at(name).values));
+  }
+}
+
+double value_of(const std::vector<Quantity>& row, const std::string& name) {
+  for (const Quantity& quantity : row)
+    if (quantity.name == name) return quantity.value;
+  FAIL("no quantity named ", name);
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("a restored compression goes on bit for bit, whenever it was saved") {
+  BpmCompression through(small_case());
+  std::vector<Checkpoint> saved;
+  std::vector<int> generation;
+  for (int step = 0; step < 200; ++step) {
+    if (step == 1 || step == 100 || step == 137) saved.push_back(through.checkpoint());
+    if (step % 50 == 0) generation.push_back(through.dynamics().reference.generation);
+    if (step == 60) through.observe();  // starts a new row, whose sums are then part of the state
+    through.step();
+  }
+  REQUIRE(generation.back() > generation[2]);  // the lists were made again between 100 and 150
+  REQUIRE(generation[2] > generation[0]);      // and before 100
+  const std::vector<Quantity> row = through.observe();
+  for (const Checkpoint& checkpoint : saved) {
+    CAPTURE(checkpoint.step);
+    BpmCompression resumed(small_case());
+    resumed.restore(checkpoint);
+    CHECK(resumed.steps_done() == checkpoint.step);
+    for (std::int64_t step = checkpoint.step; step < 200; ++step) {
+      if (step == 60) resumed.observe();
+      resumed.step();
+    }
+    const std::vector<Quantity> again = resumed.observe();
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      CAPTURE(row[k].name);
+      CHECK(again[k].value == row[k].value);
+    }
+    check_same_state(through, resumed);
+  }
+}
+
+TEST_CASE("a restored compression shows at once what the saved one showed") {
+  BpmCompression saved(small_case()), restored(small_case());
+  advance(saved, 120);
+  restored.restore(saved.checkpoint());
+  const Scene a = saved.scene(), b = restored.scene();
+  for (const char* field : {"position", "velocity", "radius", "coordination"})
+    CHECK((a.particles.at(field).values == b.particles.at(field).values));
+  CHECK(a.wall_segments == b.wall_segments);
+  CHECK((a.contacts.at("pair").values == b.contacts.at("pair").values));
+  const auto& before = std::get<std::vector<double>>(a.particles.at("pressure").values);
+  const auto& after = std::get<std::vector<double>>(b.particles.at("pressure").values);
+  for (std::size_t i = 0; i < before.size(); ++i) CHECK(after[i] == doctest::Approx(before[i]).epsilon(1e-3));
+  check_same_row(saved, restored);
+}
+
+TEST_CASE("a checkpoint of another case is refused by the array that does not fit") {
+  Case other = small_case();
+  other.bpm.primaries = 61;
+  BpmCompression of_sixty(small_case()), of_one_more(other);
+  CHECK_THROWS_WITH_AS(of_one_more.restore(of_sixty.checkpoint()),
+                       "the checkpoint has no array 'position' of 61 rows: it belongs to another case",
+                       IoError);
+  Checkpoint incomplete = of_sixty.checkpoint();
+  incomplete.arrays.erase("wall_point");
+  CHECK_THROWS_WITH_AS(of_sixty.restore(incomplete),
+                       "the checkpoint has no array 'wall_point' of 2 rows: it belongs to another case",
+                       IoError);
+}
+
+TEST_CASE("the plates start at the grain's lowest and highest point, and the top one follows the path") {
+  BpmCompression simulation(small_case());
+  const auto& particles = simulation.dynamics().particles;
+  double low = 1, high = -1;
+  for (int i = 0; i < particles.size(); ++i) {
+    low = std::min(low, particles.position[i][1] - particles.radius[i]);
+    high = std::max(high, particles.position[i][1] + particles.radius[i]);
+  }
+  CHECK(particles.walls[0].point[1] == doctest::Approx(low).epsilon(1e-14));
+  CHECK(particles.walls[1].point[1] == doctest::Approx(high).epsilon(1e-14));
+  CHECK(value_of(simulation.observe(), "strain") == 0);
+  advance(simulation, 100);
+  CHECK(particles.walls[0].point[1] == doctest::Approx(low).epsilon(1e-14));
+  CHECK(particles.walls[1].point[1] == doctest::Approx(high - 100 * 4 * 0.25e-6).epsilon(1e-12));
+  const auto row = simulation.observe();
+  CHECK(value_of(row, "strain") == doctest::Approx(-std::log(1 - 50 * 4 * 0.25e-6 / 5e-3)).epsilon(1e-9));
+  CHECK(value_of(row, "wall_height") == doctest::Approx(high - low - 1e-4).epsilon(1e-12));
+  CHECK(value_of(row, "time") == doctest::Approx(100 * 0.25e-6).epsilon(1e-14));
+}
+
+TEST_CASE("the grain weighs rho pi R^2 and friction differs inside and at the walls") {
+  Case c = small_case();
+  c.contact.friction = 0.2;
+  c.contact.wall_friction = 0.5;
+  const BpmCompression simulation(c);
+  const auto& particles = simulation.dynamics().particles;
+  const double mass = std::accumulate(particles.mass.begin(), particles.mass.end(), 0.0);
+  CHECK(mass == doctest::Approx(990 * std::numbers::pi * 25e-6).epsilon(1e-13));
+  const auto& contacts = simulation.dynamics().contacts;
+  int inner = 0, outer = 0;
+  for (int k = 0; k < contacts.size(); ++k) {
+    const bool wall = contacts.body_b[k] >= particles.size();
+    CHECK(contacts.friction[k] == (wall ? 0.5 : 0.2));
+    ++(wall ? outer : inner);
+  }
+  CHECK(inner > 60);
+  CHECK(outer >= 2);
+}
+
+TEST_CASE("progress runs from zero to one over the planned steps") {
+  Case c = small_case();
+  c.loading.max_strain = 0.001;
+  const auto simulation = create_simulation(c);
+  // travel 2 R (1 - exp(-0.001)) = 9.995 um at 1 um a step
+  REQUIRE(simulation->steps_planned() == 10);
+  CHECK(simulation->progress() == 0);
+  CHECK_FALSE(simulation->finished());
+  for (int k = 0; k < 10; ++k) simulation->step();
+  CHECK(simulation->finished());
+  CHECK(simulation->progress() == 1);
+}
+
+TEST_CASE("a row's wall forces are means over the steps since the last row") {
+  BpmCompression simulation(small_case());
+  advance(simulation, 100);
+  simulation.observe();
+  double bottom = 0, top = 0;
+  for (int k = 0; k < 10; ++k) {
+    simulation.step();
+    bottom -= simulation.dynamics().wall_impulse(0)[1] / (10 * 0.25e-6);
+    top += simulation.dynamics().wall_impulse(1)[1] / (10 * 0.25e-6);
+  }
+  const auto row = simulation.observe();
+  CHECK(top > 0);
+  CHECK(value_of(row, "force_bottom") == doctest::Approx(bottom).epsilon(1e-12));
+  CHECK(value_of(row, "force_top") == doctest::Approx(top).epsilon(1e-12));
+  CHECK(value_of(row, "stress_top") == doctest::Approx(top / value_of(row, "width")).epsilon(1e-12));
+}
+
+TEST_CASE("a compression that cannot be run is refused with the key and the value") {
+  const auto with = [](auto change) {
+    Case c = small_case();
+    change(c);
+    return [c] { BpmCompression{c}; };
+  };
+  CHECK_THROWS_WITH_AS(with([](Case& c) { c.contact.activation = "never"; })(),
+                       "contact.activation must be 'anticipated' or 'closed_at_mid_step', got 'never'",
+                       UsageError);
+  CHECK_THROWS_AS(with([](Case& c) { c.contact.restitution = 0.5; })(), UsageError);
+  CHECK_THROWS_AS(with([](Case& c) { c.contact.push_out = 2; })(), UsageError);
+  CHECK_THROWS_AS(with([](Case& c) { c.bpm.attraction = -1; })(), UsageError);
+  CHECK_THROWS_AS(with([](Case& c) { c.bpm.primaries = 3; })(), UsageError);
+  CHECK_THROWS_AS(with([](Case& c) { c.loading.wall_velocity = 0; })(), UsageError);
+}
+
+TEST_CASE("a plate that leaves no room ends with a NumericalError that says what to change") {
+  Case c = small_case();
+  c.loading = {.wall_velocity = 50, .max_strain = 4, .unload_at = {}};
+  BpmCompression simulation(c);
+  try {
+    while (!simulation.finished()) simulation.step();
+    FAIL("rigid primaries went into a gap smaller than one of them");
+  } catch (const NumericalError& error) {
+    CHECK(std::string(error.what()).find("time.step") != std::string::npos);
+  }
+}

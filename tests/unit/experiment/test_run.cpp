@@ -1,0 +1,82 @@
+#include <doctest/doctest.h>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/experiment/create.hpp"
+#include "softgrain/experiment/run.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+/// Ten steps; step k takes k sweeps, has the residual 1/k and the overlap 0.1 k; every third one converges.
+class Countdown final : public Simulation {
+ public:
+  bool finished() const override { return done_ == 10; }
+  double progress() const override { return static_cast<double>(done_) / 10; }
+  double time() const override { return static_cast<double>(done_); }
+  std::int64_t steps_done() const override { return done_; }
+  std::int64_t steps_planned() const override { return 10; }
+  StepReport step() override {
+    const int k = static_cast<int>(++done_);
+    return {.sweeps = k, .residual_max = 1.0 / k, .overlap_max = 0.1 * k, .converged = k % 3 == 0};
+  }
+  std::vector<Quantity> observe() override { return {}; }
+  Scene scene() const override { return {}; }
+  Checkpoint checkpoint() const override { return {}; }
+  void restore(const Checkpoint&) override {}
+
+ private:
+  std::int64_t done_ = 0;
+};
+
+/// Stops the run after a step.
+struct StopAfter final : Recorder {
+  explicit StopAfter(std::int64_t last_step) : last(last_step) {}
+  bool after_step(Simulation& simulation, const StepReport& step, const RunReport& run) override {
+    CHECK(step.sweeps == simulation.steps_done());
+    seen = run;
+    return simulation.steps_done() < last;
+  }
+  std::int64_t last;
+  RunReport seen;
+};
+
+}  // namespace
+
+TEST_CASE("a run goes on until the simulation is finished and sums up its steps") {
+  Countdown simulation;
+  StopAfter recorder(100);
+  const RunReport report = run(simulation, recorder);
+  CHECK(report.steps == 10);
+  CHECK(report.steps_converged == 3);
+  CHECK(report.sweeps == 55);
+  CHECK(report.residual_max == 1);
+  CHECK(report.overlap_max == 1);
+  CHECK(recorder.seen.sweeps == 55);
+}
+
+TEST_CASE("the recorder stops a run, which goes on later where it stopped") {
+  Countdown simulation;
+  StopAfter first(4), second(100);
+  const RunReport half = run(simulation, first);
+  CHECK(half.steps == 4);
+  const RunReport whole = run(simulation, second, half);
+  CHECK(whole.steps == 10);
+  CHECK(whole.sweeps == 55);
+}
+
+TEST_CASE("a finished simulation makes no step") {
+  Countdown simulation;
+  StopAfter recorder(100);
+  run(simulation, recorder);
+  CHECK(run(simulation, recorder).steps == 0);
+}
+
+TEST_CASE("a loading or a model that does not exist is refused by name") {
+  Case unknown;
+  unknown.experiment.loading = "torsion";
+  CHECK_THROWS_WITH_AS(create_simulation(unknown),
+                       "experiment.loading 'torsion' is not known; use 'diametral'", UsageError);
+  unknown.experiment = {.loading = "diametral", .model = "fem"};
+  CHECK_THROWS_AS(create_simulation(unknown), UsageError);
+}
