@@ -71,12 +71,18 @@ std::string closing_words(const RunRecord& record, const std::string& directory)
                      record.message, 100 * record.progress, reached, directory, directory);
 }
 
-void carry_out(RunRequest request, const RunDirectory& directory, const RunOptions& options) {
-  SignalWatch signals;
-  if (options.threads > 0) set_threads(options.threads);
+RunRequest request_of(const RunOptions& options, bool resume) {
+  RunRequest request;
   request.command = command_line();
   request.stop_after = seconds_of(options.stop_after);
   request.verbose = options.verbose;
+  request.resume = resume;
+  return request;
+}
+
+void carry_out(const RunRequest& request, const RunDirectory& directory, const RunOptions& options) {
+  SignalWatch signals;
+  if (options.threads > 0) set_threads(options.threads);
   const auto simulation = create_simulation(request.the_case);
   RunOutcome outcome;
   {
@@ -95,10 +101,9 @@ fs::path default_directory(const fs::path& case_file) {
 
 void run_case(const RunArguments& arguments) {
   const CaseArguments& source = arguments.the_case;
-  RunRequest request;
+  RunRequest request = request_of(arguments.options, arguments.resume);
   request.the_case = read_case(source.path, source.sets);
   request.case_text = resolved_case_text(request.the_case);
-  request.resume = arguments.resume;
   const RunPaths paths{arguments.options.directory.empty() ? default_directory(source.path)
                                                            : fs::path(arguments.options.directory)};
   std::error_code no_such_file;
@@ -111,18 +116,17 @@ void run_case(const RunArguments& arguments) {
   const bool keep = arguments.force || going_on;
   const RunDirectory directory(paths.root,
                                keep ? RunDirectory::IfNotEmpty::keep : RunDirectory::IfNotEmpty::refuse);
-  carry_out(std::move(request), directory, arguments.options);
+  carry_out(request, directory, arguments.options);
 }
 
 void resume_run(const RunOptions& options) {
   const RunPaths paths{options.directory};
   require(fs::exists(paths.run_file()), "{} is not a run's directory: it has no run.json", options.directory);
+  RunRequest request = request_of(options, true);
   const RunDirectory directory(paths.root, RunDirectory::IfNotEmpty::keep);
-  RunRequest request;
   request.the_case = read_case(paths.case_file().string());
   request.case_text = read_file(paths.case_file());
-  request.resume = true;
-  carry_out(std::move(request), directory, options);
+  carry_out(request, directory, options);
 }
 
 }  // namespace

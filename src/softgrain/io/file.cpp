@@ -68,10 +68,12 @@ std::string read_file(const fs::path& path) {
   }
 }
 
-PendingFile::PendingFile(fs::path path, std::string_view bytes)
-    : path_(std::move(path)), temporary_(path_.string() + ".tmp") {
+PendingFile::PendingFile(fs::path path, std::string_view bytes, Survives survives)
+    : path_(std::move(path)), temporary_(path_.string() + ".tmp"), survives_(survives) {
   Descriptor file = open_file(temporary_, O_WRONLY | O_CREAT | O_TRUNC);
-  if (write_all(file.number(), bytes) == bytes.size() && ::fsync(file.number()) == 0 && file.close()) return;
+  bool ok = write_all(file.number(), bytes) == bytes.size();
+  ok = ok && (survives_ == Survives::kill || ::fsync(file.number()) == 0);
+  if (ok && file.close()) return;
   const int error = errno;
   ::unlink(temporary_.c_str());
   errno = error;
@@ -85,10 +87,13 @@ PendingFile::~PendingFile() {
 void PendingFile::commit() {
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, "cannot rename to it");
   committed_ = true;
-  sync_directory(path_.has_parent_path() ? path_.parent_path() : fs::path("."));
+  if (survives_ == Survives::power_cut)
+    sync_directory(path_.has_parent_path() ? path_.parent_path() : fs::path("."));
 }
 
-void write_file(const fs::path& path, std::string_view bytes) { PendingFile(path, bytes).commit(); }
+void write_file(const fs::path& path, std::string_view bytes, Survives survives) {
+  PendingFile(path, bytes, survives).commit();
+}
 
 AppendFile::AppendFile(fs::path path)
     : path_(std::move(path)), file_(open_file(path_, O_WRONLY | O_CREAT | O_APPEND)) {}

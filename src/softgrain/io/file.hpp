@@ -31,12 +31,14 @@ Descriptor open_file(const std::filesystem::path& path, int flags);
 /// The whole file. Raises IoError.
 std::string read_file(const std::filesystem::path& path);
 
-/// A file that appears under its name complete or not at all: the bytes go to `path`.tmp and to the disk
-/// (fsync) first, `commit` renames. Without `commit` nothing is left. Raises IoError naming the path and the
-/// bytes needed.
+/// What a finished file survives. A power cut costs two waits for the disk.
+enum class Survives { kill, power_cut };
+
+/// A file that appears under its name complete or not at all: the bytes go to `path`.tmp first, `commit`
+/// renames. Without `commit` nothing is left. Raises IoError naming the path and the bytes needed.
 class PendingFile {
  public:
-  PendingFile(std::filesystem::path path, std::string_view bytes);
+  PendingFile(std::filesystem::path path, std::string_view bytes, Survives survives = Survives::power_cut);
   ~PendingFile();
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;
@@ -46,11 +48,13 @@ class PendingFile {
 
  private:
   std::filesystem::path path_, temporary_;
+  Survives survives_;
   bool committed_ = false;
 };
 
 /// Replaces the file's contents in one piece.
-void write_file(const std::filesystem::path& path, std::string_view bytes);
+void write_file(const std::filesystem::path& path, std::string_view bytes,
+                Survives survives = Survives::power_cut);
 
 /// A file that only grows, each piece by one write(): series.csv, log.txt. A piece that does not fit on the
 /// disk is taken back. Raises IoError naming the path and the bytes needed.

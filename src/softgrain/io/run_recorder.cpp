@@ -185,7 +185,8 @@ void RunRecorder::save_scene(const Simulation& simulation, const Scene& scene) {
   const std::string label = label_of(last_snapshot_);
   write_scene(paths_.vtk_folder(), label, scene);
   frames_.push_back({simulation.time(), label});
-  write_file(paths_.collection_file(), pvd_text(frames_, paths_.vtk_folder().filename().string()));
+  write_file(paths_.collection_file(), pvd_text(frames_, paths_.vtk_folder().filename().string()),
+             Survives::kill);
 }
 
 void RunRecorder::write_record(const Simulation& simulation) {

@@ -14,6 +14,7 @@ constexpr std::array watched{SIGINT, SIGTERM, SIGUSR2, SIGHUP, SIGUSR1, SIGPIPE}
 
 // All that a handler may touch. It is the operating system's: one per process, so these are too.
 std::atomic<int> first_stop{0};
+std::atomic<bool> interrupted{false};
 std::atomic<bool> snapshot_wanted{false};
 std::atomic<bool> deferring{false};
 std::array<struct sigaction, watched.size()> before;
@@ -26,8 +27,9 @@ void on_signal(int signal) {
     return;
   }
   int none = 0;
-  const bool first = first_stop.compare_exchange_strong(none, signal);
-  if (!deferring || (signal == SIGINT && !first)) _exit(exit_code_of(signal));
+  first_stop.compare_exchange_strong(none, signal);
+  const bool second_interrupt = signal == SIGINT && interrupted.exchange(true);
+  if (!deferring || second_interrupt) _exit(exit_code_of(signal));
 }
 
 }  // namespace
@@ -51,6 +53,7 @@ std::string signal_name(int signal) {
 
 SignalWatch::SignalWatch() {
   first_stop = 0;
+  interrupted = false;
   snapshot_wanted = false;
   deferring = false;
   for (std::size_t k = 0; k < watched.size(); ++k) {

@@ -162,9 +162,10 @@ std::string encode_vtp(const PolyData& data) {
 }
 
 void write_scene(const std::filesystem::path& folder, const std::string& label, const Scene& scene) {
-  write_file(folder / fmt::format("particles_{}.vtp", label), encode_vtp(particles_of(scene)));
-  write_file(folder / fmt::format("contacts_{}.vtp", label), encode_vtp(contacts_of(scene)));
-  write_file(folder / fmt::format("walls_{}.vtp", label), encode_vtp(walls_of(scene)));
+  write_file(folder / fmt::format("particles_{}.vtp", label), encode_vtp(particles_of(scene)),
+             Survives::kill);
+  write_file(folder / fmt::format("contacts_{}.vtp", label), encode_vtp(contacts_of(scene)), Survives::kill);
+  write_file(folder / fmt::format("walls_{}.vtp", label), encode_vtp(walls_of(scene)), Survives::kill);
 }
 
 std::string pvd_text(const std::vector<Frame>& frames, const std::string& folder) {
