@@ -1,0 +1,153 @@
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "samples.hpp"
+#include "softgrain/core/error.hpp"
+
+using namespace softgrain;
+using namespace softgrain::test;
+
+namespace {
+
+/// Stress along x in uniaxial strain of stretch s.
+template <class Law>
+double pressing(const Law& law, double s) {
+  return law.stress(Mat<2>::diagonal({s, 1}))(0, 0);
+}
+
+std::string message_of(double young, double poisson) {
+  try {
+    (void)lame(young, poisson);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+template <int Dim, class Law>
+void check_split(const Law& law) {
+  const auto deviatoric = law.deviatoric();
+  const auto U = law.volume();
+  for (const Mat<Dim>& F : sample_deformations<Dim>()) {
+    const double J = determinant(F);
+    CHECK(deviatoric.energy(F) + U.energy(J) == doctest::Approx(law.energy(F)).epsilon(1e-12));
+    CHECK(difference(deviatoric.stress(F) + U.derivative(J) * cofactor(F), law.stress(F)) < 1e-13 * 20);
+    Mat<Dim* Dim> A = deviatoric.tangent(F);
+    add_outer(A, U.second_derivative(J), cofactor(F), cofactor(F));
+    add_cofactor_derivative(A, U.derivative(J), F);
+    CHECK(difference(A, law.tangent(F)) < 1e-13 * largest_entry(A));
+    CHECK(U.derivative(J) ==
+          doctest::Approx(derivative([&](double by) { return U.energy(J + by); })).epsilon(1e-9));
+    CHECK(U.second_derivative(J) ==
+          doctest::Approx(derivative([&](double by) { return U.derivative(J + by); })).epsilon(1e-9));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("St Venant-Kirchhoff's stress is largest at a stretch of one over root three, then falls") {
+  const auto law = st_venant_kirchhoff(E, nu);
+  const double peak = 1 / std::sqrt(3.0);
+  for (double s = 0.05; s < 1; s += 0.05) CHECK(pressing(law, s) >= pressing(law, peak));
+  // P = M s (s^2 - 1) / 2 with the uniaxial strain modulus M.
+  CHECK(pressing(law, peak) == doctest::Approx(-E * 0.7 / (1.3 * 0.4) / (3 * std::sqrt(3.0))).epsilon(1e-13));
+  CHECK(law.tangent(Mat<2>::diagonal({peak - 0.01, 1}))(0, 0) < 0);
+  CHECK(law.tangent(Mat<2>::diagonal({peak + 0.01, 1}))(0, 0) > 0);
+  CHECK(pressing(law, 0) == 0);  // flat, and nothing resists
+}
+
+TEST_CASE("the other laws resist more the more they are pressed") {
+  for_each_law([](const std::string& name, const auto& law) {
+    if (name == "st_venant_kirchhoff") return;
+    CAPTURE(name);
+    for (double s = 0.1; s < 1; s += 0.05) CHECK(pressing(law, s) < pressing(law, s + 0.05));
+  });
+}
+
+TEST_CASE("to flatten a neo-Hookean or Hencky point takes a stress without bound") {
+  CHECK(pressing(neo_hookean(E, nu), 1e-3) < -1000 * E);
+  CHECK(pressing(neo_hookean_quadratic(E, nu), 1e-3) < -300 * E);
+  CHECK(pressing(hencky(E, nu), 1e-3) < -1000 * E);
+  CHECK(pressing(corotated(E, nu), 1e-3) > -1.5 * E);
+}
+
+TEST_CASE("a law with a logarithm admits no inverted point and no NaN") {
+  const Mat<2> inverted = Mat<2>::diagonal({-0.1, 1}), flat = Mat<2>::diagonal({0, 1});
+  const Mat<2> nan = Mat<2>::diagonal({std::numeric_limits<double>::quiet_NaN(), 1});
+  const auto law = neo_hookean(E, nu);
+  CHECK(admissible(law, identity<2>()));
+  CHECK_FALSE(admissible(law, inverted));
+  CHECK_FALSE(admissible(law, flat));
+  CHECK_FALSE(admissible(law, nan));
+  CHECK(std::isnan(law.stress(inverted)(0, 0)));
+  CHECK(admissible(st_venant_kirchhoff(E, nu), inverted));
+  CHECK_FALSE(admissible(st_venant_kirchhoff(E, nu), nan));
+}
+
+TEST_CASE("one inverted point of eight is found and turns only its own lane into NaN") {
+  const auto law = neo_hookean(E, nu);
+  Mat<2, Wide> F = identity<2, Wide>();
+  CHECK(all(admissible(law, F)));
+  F(0, 0).set(5, -0.2);
+  CHECK_FALSE(all(admissible(law, F)));
+  CHECK(any(admissible(law, F)));
+  const Mat<2, Wide> P = law.stress(F);
+  for (int lane = 0; lane < Wide::size; ++lane) CHECK(std::isnan(P(0, 0)[lane]) == (lane == 5));
+}
+
+TEST_CASE("a law comes apart into a part of the order of mu and an energy of volume change") {
+  check_split<2>(neo_hookean(E, nu));
+  check_split<3>(neo_hookean(E, nu));
+  check_split<2>(neo_hookean_quadratic(E, nu));
+  check_split<3>(neo_hookean_quadratic(E, nu));
+  check_split<2>(hencky(E, nu));
+  check_split<3>(hencky(E, nu));
+}
+
+TEST_CASE("towards incompressibility all that grows without bound is in the energy of volume change") {
+  const Mat<2> F = with_stretches<2>({0.8, 1.2});
+  const auto check = [&](const auto& nearly, const auto& law) {
+    CHECK(largest_entry(nearly.tangent(F)) > 1000 * E);
+    CHECK(largest_entry(nearly.deviatoric().tangent(F)) < 1.2 * largest_entry(law.deviatoric().tangent(F)));
+  };
+  check(neo_hookean(E, 0.4999), neo_hookean(E, nu));
+  check(neo_hookean_quadratic(E, 0.4999), neo_hookean_quadratic(E, nu));
+  check(hencky(E, 0.4999), hencky(E, nu));
+}
+
+TEST_CASE("elastic parameters out of range are refused by name") {
+  CHECK(message_of(-1, 0.3) == "Young's modulus must be > 0 Pa, got -1");
+  CHECK(message_of(0, 0.3) == "Young's modulus must be > 0 Pa, got 0");
+  CHECK(message_of(std::numeric_limits<double>::infinity(), 0.3) ==
+        "Young's modulus must be > 0 Pa, got inf");
+  CHECK(message_of(std::numeric_limits<double>::quiet_NaN(), 0.3) ==
+        "Young's modulus must be > 0 Pa, got nan");
+  const std::string range = "Poisson's ratio must be > -1 and < 0.5 (0.5 is incompressible), got ";
+  CHECK(message_of(1, 0.5) == range + "0.5");
+  CHECK(message_of(1, -1) == range + "-1");
+  CHECK(message_of(1, std::numeric_limits<double>::quiet_NaN()) == range + "nan");
+  CHECK(message_of(1, -0.5).empty());
+}
+
+TEST_CASE("laws are chosen by name, and an unknown name lists the choices") {
+  CHECK(std::holds_alternative<NeoHookean<LogVolume>>(make_law("neo_hookean", E, nu)));
+  CHECK(std::holds_alternative<NeoHookean<QuadraticVolume>>(make_law("neo_hookean_quadratic", E, nu)));
+  CHECK(std::holds_alternative<Hencky>(make_law("hencky", E, nu)));
+  CHECK(std::holds_alternative<Corotated>(make_law("corotated", E, nu)));
+  CHECK(std::holds_alternative<SmallStrainHooke>(make_law("small_strain_hooke", E, nu)));
+  CHECK(std::holds_alternative<StVenantKirchhoff>(make_law("st_venant_kirchhoff", E, nu)));
+  CHECK_THROWS_WITH_AS(
+      make_law("rubber", E, nu),
+      "unknown elastic law 'rubber'; the laws are neo_hookean, neo_hookean_quadratic, hencky, "
+      "corotated, small_strain_hooke, st_venant_kirchhoff",
+      UsageError);
+  CHECK_THROWS_AS(make_law("hencky", -1, nu), UsageError);
+}
+
+TEST_CASE("who chooses a law with a limited range is told so") {
+  for (const LawChoice& choice : law_choices()) {
+    const bool limited = choice.name == "small_strain_hooke" || choice.name == "st_venant_kirchhoff";
+    CHECK(choice.caution.empty() == !limited);
+  }
+}
