@@ -1,0 +1,63 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "softgrain/contact/contact_system.hpp"
+#include "softgrain/mpm/outline_contacts.hpp"
+
+namespace softgrain {
+
+/// Compliance of the outlines of the eight grains of a batch, (A^-1)_bb: (2 outline nodes)^2 row-major [m/N
+/// per m depth].
+using OutlineCompliance = std::vector<Wide>;
+
+/// Contacts of implicit grains as a ContactSystem (theory: W = H^T A^-1 H/dt^2, with A = M/dt^2 + K): the
+/// impulse sees the implicit operator, condensed grain by grain on the vertices that take part in contacts.
+/// Velocities are those over the step:
+///   u_n = (g + n . (du_slave - du_master))/dt,   u_t = (slip + t . (du_slave - du_master))/dt,
+/// so that u_n >= 0 is "no penetration at the end of the step".
+class ElasticContacts {
+ public:
+  /// increment: (outline vertices) du without contact forces [m]. compliance: one for each batch of the
+  /// grains.
+  ElasticContacts(const SoftGrains& grains, std::span<const OutlineContact> contacts,
+                  std::span<const OutlineCompliance> compliance, std::span<const Vec<2>> increment,
+                  double dt);
+
+  int size() const { return static_cast<int>(contacts_.size()); }
+  const Mat<2>& delassus_block(int contact) const { return delassus_[contact]; }
+  Vec<2> relative_velocity(int contact) const;
+  void apply_impulse(int contact, const Vec<2>& dp);
+
+ private:
+  /// A grain's vertices in contact: `count` of them, from `first` in increment_ and from `matrix` in
+  /// compliance_.
+  struct Condensed {
+    int count = 0;
+    std::size_t first = 0, matrix = 0;
+  };
+  void number_vertices();
+  void copy_compliance(std::span<const OutlineCompliance> compliance);
+  const double* row(const Condensed& grain, int vertex, int axis) const {
+    return &compliance_[grain.matrix + static_cast<std::size_t>(2 * local_[vertex] + axis) * 2 * grain.count];
+  }
+  Vec<2> increment_of(int vertex) const;
+  void add_force(int vertex, const Vec<2>& force);
+  Mat<2> compliance_between(int vertex_a, int vertex_b) const;
+  Mat<2> delassus_of(const OutlineContact& contact) const;
+
+  const SoftGrains& grains_;
+  std::span<const OutlineContact> contacts_;
+  double dt_;
+  std::vector<int> local_;  // (outline vertices) number among the grain's vertices in contact, -1 if none
+  std::vector<Condensed> condensed_;  // (grains)
+  std::vector<double> increment_;     // du of the vertices in contact, grain by grain
+  std::vector<double> compliance_;
+  std::vector<Mat<2>> delassus_;
+};
+
+/// Force on each outline vertex from the contacts' impulses over dt [N/m].
+std::vector<Vec<2>> contact_forces(const SoftGrains& grains, std::span<const OutlineContact> contacts,
+                                   std::span<const Vec<2>> impulse, double dt);
+
+}  // namespace softgrain

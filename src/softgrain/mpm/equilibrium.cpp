@@ -1,0 +1,224 @@
+#include "softgrain/mpm/equilibrium.hpp"
+
+#include <variant>
+
+#include "softgrain/material/elastic_law.hpp"
+#include "softgrain/math/tensor.hpp"
+
+namespace softgrain {
+namespace {
+
+using WideMat = Mat<2, Wide>;
+
+/// The four points of a cell in the eight grains: F of each.
+struct CellState {
+  CellState(const GrainBatch& batch, int cell_index)
+      : cell(batch.topology->grid.cell[cell_index]), points(&batch.topology->points[4 * cell_index]) {
+    const Wide inverse_radius = 1.0 / batch.radius;
+    for (int p = 0; p < 4; ++p) {
+      for (int a = 0; a < 4; ++a) {
+        const Vec<2, Wide>& x = batch.position[cell[a]];
+        const Vec<2>& g = points[p].gradient[a];
+        // F = sum_a x_a (x) dN_a/dX
+        for (int i = 0; i < 2; ++i)
+          for (int j = 0; j < 2; ++j) F[p](i, j) += x[i] * g[j];
+      }
+      F[p] = inverse_radius * F[p];
+    }
+  }
+  /// Mean J of the cell, weighted by volume.
+  Wide mean_dilatation(double& volume) const {
+    Wide sum = 0.0;
+    volume = 0;
+    for (int p = 0; p < 4; ++p) sum += points[p].volume * determinant(F[p]), volume += points[p].volume;
+    return sum * Wide(1 / volume);
+  }
+
+  const std::array<int, 4>& cell;
+  const MaterialPoint* points;
+  std::array<WideMat, 4> F;
+};
+
+unsigned inverted_lanes(const Wide& J) {
+  unsigned lanes = 0;
+  for (int lane = 0; lane < Wide::size; ++lane)
+    if (!(J[lane] > 0)) lanes |= 1u << lane;
+  return lanes;
+}
+
+template <class Law>
+unsigned cell_force(const Law& law, const CellState& state, Wide radius, WideVectors& force) {
+  unsigned inverted = 0;
+  for (int p = 0; p < 4; ++p) {
+    if (Law::needs_positive_J) inverted |= inverted_lanes(determinant(state.F[p]));
+    const WideMat P = law.stress(state.F[p]);
+    const Wide weight = state.points[p].volume * radius;  // V R^2 / R
+    for (int a = 0; a < 4; ++a) {
+      const Vec<2>& g = state.points[p].gradient[a];
+      for (int i = 0; i < 2; ++i) force[state.cell[a]][i] += weight * (P(i, 0) * g[0] + P(i, 1) * g[1]);
+    }
+  }
+  return inverted;
+}
+
+/// With P = dpsi_dev/dF + U'(mean J) cof F.
+template <class Law>
+unsigned cell_force_mean_dilatation(const Law& law, const CellState& state, Wide radius, WideVectors& force) {
+  double volume = 0;
+  const Wide J = state.mean_dilatation(volume);
+  const Wide pressure = law.volume().derivative(J);
+  unsigned inverted = cell_force(law.deviatoric(), state, radius, force) | inverted_lanes(J);
+  for (int p = 0; p < 4; ++p) {
+    const WideMat cof = cofactor(state.F[p]);
+    const Wide weight = state.points[p].volume * radius * pressure;
+    for (int a = 0; a < 4; ++a) {
+      const Vec<2>& g = state.points[p].gradient[a];
+      for (int i = 0; i < 2; ++i) force[state.cell[a]][i] += weight * (cof(i, 0) * g[0] + cof(i, 1) * g[1]);
+    }
+  }
+  return inverted;
+}
+
+/// The ten blocks K_ab, b <= a, of a cell.
+using CellStiffness = std::array<std::array<Wide, 4>, 10>;
+
+/// K_ab += V g_a . A . g_b
+void add_point_stiffness(const Mat<4, Wide>& A, const MaterialPoint& point, CellStiffness& K) {
+  int pair = 0;
+  for (int a = 0; a < 4; ++a) {
+    const Vec<2>& g_a = point.gradient[a];
+    std::array<Wide, 8> row;  // V sum_J A_iJkL g_a,J at 4 i + 2 k + L
+    for (int i = 0; i < 2; ++i)
+      for (int kL = 0; kL < 4; ++kL)
+        row[4 * i + kL] = point.volume * (g_a[0] * A(2 * i, kL) + g_a[1] * A(2 * i + 1, kL));
+    for (int b = 0; b <= a; ++b, ++pair) {
+      const Vec<2>& g_b = point.gradient[b];
+      for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 2; ++k)
+          K[pair][2 * i + k] += row[4 * i + 2 * k] * g_b[0] + row[4 * i + 2 * k + 1] * g_b[1];
+    }
+  }
+}
+
+template <class Law>
+void cell_stiffness(const Law& law, const CellState& state, CellStiffness& K) {
+  for (int p = 0; p < 4; ++p) add_point_stiffness(law.tangent(state.F[p]), state.points[p], K);
+}
+
+template <class Law>
+void cell_stiffness_mean_dilatation(const Law& law, const CellState& state, CellStiffness& K) {
+  double volume = 0;
+  const Wide J = state.mean_dilatation(volume);
+  const Wide pressure = law.volume().derivative(J);
+  const Wide bulk = law.volume().second_derivative(J) * Wide(1 / volume);
+  std::array<Vec<2, Wide>, 4> dJ{};  // sum_p V cof F . g_a
+  for (int p = 0; p < 4; ++p) {
+    Mat<4, Wide> A = law.deviatoric().tangent(state.F[p]);
+    add_cofactor_derivative(A, pressure, state.F[p]);
+    add_point_stiffness(A, state.points[p], K);
+    const WideMat cof = cofactor(state.F[p]);
+    for (int a = 0; a < 4; ++a) {
+      const Vec<2>& g = state.points[p].gradient[a];
+      for (int i = 0; i < 2; ++i) dJ[a][i] += state.points[p].volume * (cof(i, 0) * g[0] + cof(i, 1) * g[1]);
+    }
+  }
+  int pair = 0;
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b <= a; ++b, ++pair)
+      for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 2; ++k) K[pair][2 * i + k] += bulk * dJ[a][i] * dJ[b][k];
+}
+
+template <class Law>
+Wide cell_energy(const Law& law, const CellState& state) {
+  Wide sum = 0.0;
+  for (int p = 0; p < 4; ++p) sum += state.points[p].volume * law.energy(state.F[p]);
+  return sum;
+}
+
+}  // namespace
+
+unsigned internal_force(const SoftGrains& grains, const GrainBatch& batch, WideVectors& force) {
+  force.assign(batch.position.size(), {});
+  return std::visit(
+      [&]<class Law>(const Law& law) {
+        unsigned inverted = 0;
+        for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell) {
+          const CellState state(batch, cell);
+          if constexpr (SplitLaw<Law, 2>) {
+            if (grains.mean_dilatation) {
+              inverted |= cell_force_mean_dilatation(law, state, batch.radius, force);
+              continue;
+            }
+          }
+          inverted |= cell_force(law, state, batch.radius, force);
+        }
+        return inverted;
+      },
+      grains.law);
+}
+
+void add_stiffness(const SoftGrains& grains, const GrainBatch& batch, BatchedCholesky& matrix) {
+  std::visit(
+      [&]<class Law>(const Law& law) {
+        for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell) {
+          const CellState state(batch, cell);
+          CellStiffness K{};
+          bool done = false;
+          if constexpr (SplitLaw<Law, 2>) {
+            if ((done = grains.mean_dilatation)) cell_stiffness_mean_dilatation(law, state, K);
+          }
+          if (!done) cell_stiffness(law, state, K);
+          for (int pair = 0; pair < 10; ++pair) {
+            const CellBlock& to = batch.topology->cell_blocks[10 * cell + pair];
+            const auto& k = K[pair];
+            matrix.add_block(to.block, to.transposed ? std::array<Wide, 4>{k[0], k[2], k[1], k[3]} : k);
+          }
+        }
+      },
+      grains.law);
+}
+
+Wide elastic_energy(const SoftGrains& grains, const GrainBatch& batch) {
+  return std::visit(
+      [&]<class Law>(const Law& law) {
+        Wide sum = 0.0;
+        for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell) {
+          const CellState state(batch, cell);
+          if constexpr (SplitLaw<Law, 2>) {
+            if (grains.mean_dilatation) {
+              double volume = 0;
+              const Wide J = state.mean_dilatation(volume);
+              sum += cell_energy(law.deviatoric(), state) + volume * law.volume().energy(J);
+              continue;
+            }
+          }
+          sum += cell_energy(law, state);
+        }
+        return sum * (batch.radius * batch.radius);
+      },
+      grains.law);
+}
+
+std::vector<PointState> point_states(const SoftGrains& grains, int grain) {
+  const auto& [batch, lane] = grains.batch_of(grain);
+  std::vector<PointState> states;
+  std::visit(
+      [&]<class Law>(const Law& law) {
+        for (int cell = 0; cell < static_cast<int>(batch->topology->grid.cell.size()); ++cell) {
+          const CellState state(*batch, cell);
+          for (int p = 0; p < 4; ++p) {
+            PointState point;
+            for (int k = 0; k < 4; ++k) point.F.c[k] = state.F[p].c[k][lane];
+            const double J = determinant(point.F);
+            point.stress = (1 / J) * (law.stress(point.F) * transpose(point.F));
+            point.pressure = -trace(point.stress) / 2;
+            states.push_back(point);
+          }
+        }
+      },
+      grains.law);
+  return states;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,246 @@
+#include "softgrain/mpm/implicit_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "softgrain/contact/nlgs.hpp"
+#include "softgrain/core/error.hpp"
+#include "softgrain/mpm/equilibrium.hpp"
+
+namespace softgrain {
+namespace {
+
+/// A correction larger than this, over the mean radius, is not trusted.
+constexpr double largest_correction = 0.5;
+
+std::span<Wide> numbers(WideVectors& vectors) { return {&vectors[0][0], 2 * vectors.size()}; }
+
+/// First grain among the lanes set in `lanes`, -1 if none holds a grain.
+int grain_in(const GrainBatch& batch, unsigned lanes) {
+  for (int lane = 0; lane < Wide::size; ++lane)
+    if ((lanes >> lane & 1u) != 0 && batch.grain[lane] >= 0) return batch.grain[lane];
+  return -1;
+}
+
+}  // namespace
+
+ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
+                                   const ImplicitOptions& implicit_options)
+    : grains(std::move(soft_grains)), walls(std::move(plates)), options(implicit_options) {
+  require(grains.size() > 0, "there is no grain");
+  require(options.friction >= 0 && options.wall_friction >= 0, "friction must be >= 0, got {} and {}",
+          options.friction, options.wall_friction);
+  smallest_radius_ = grains.radius(0);
+  for (int g = 0; g < grains.size(); ++g) {
+    mean_radius_ += grains.radius(g) / grains.size();
+    smallest_radius_ = std::min(smallest_radius_, grains.radius(g));
+  }
+  double outline_length = 0;
+  for (int g = 0; g < grains.size(); ++g) outline_length += 2 * std::numbers::pi * grains.radius(g);
+  margin_ = 0.5 * outline_length / grains.outline_size();
+  for (const GrainBatch& batch : grains.batches) {
+    matrix_.emplace_back(batch.topology->pattern);
+    const std::size_t width = 2 * batch.topology->grid.outline_nodes();
+    compliance_.emplace_back(width * width);
+  }
+  right_.resize(grains.batches.size());
+  force_.resize(grains.batches.size());
+  wall_impulse_.resize(walls.size());
+}
+
+SoftStepReport ImplicitDynamics::step(double dt) {
+  SoftStepReport report;
+  wall_impulse_.assign(walls.size(), {});
+  double done = 0, part = dt;
+  int halvings = 0;
+  while (done < dt * (1 - 1e-9)) {
+    part = std::min(part, dt - done);
+    const Failure failure = try_step(part, report);
+    if (failure == Failure::none) {
+      done += part;
+      part *= 2;
+      halvings = std::max(0, halvings - 1);
+      continue;
+    }
+    take_back();
+    ++report.rejected;
+    if (++halvings > options.max_halvings) {
+      const char* cause = failure == Failure::inverted_point      ? "a material point is turned inside out"
+                          : failure == Failure::indefinite_matrix ? "the stiffness is indefinite"
+                          : failure == Failure::too_far           ? "a correction is larger than a grain"
+                                                                  : "Newton's method does not converge";
+      throw NumericalError(
+          fmt::format("no step of soft grains down to dt = {:.3g} s: {} in grain {}; use a smaller time step "
+                      "or a finer grid",
+                      part, cause, failed_grain_));
+    }
+    part /= 2;
+  }
+  report.converged = true;
+  return report;
+}
+
+ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& report) {
+  grains.gather_outline(outline_.start);
+  walls_start_ = walls;
+  start_.clear();
+  velocity_start_.clear();
+  for (GrainBatch& batch : grains.batches) {
+    start_.push_back(batch.position);
+    velocity_start_.push_back(batch.velocity);
+    for (std::size_t i = 0; i < batch.position.size(); ++i) batch.position[i] += Wide(dt) * batch.velocity[i];
+  }
+  for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
+  outline_.walls = walls;
+  outline_.dt = dt;
+
+  Failure failure = factor(dt, options.proximal, report);
+  if (failure == Failure::indefinite_matrix) failure = factor(dt, 4 * options.proximal, report);
+  for (int iteration = 1; failure == Failure::none; ++iteration) {
+    if ((failure = residual(dt)) != Failure::none) break;
+    solve_contacts(dt, report);
+    const double correction = correct() / mean_radius_;
+    ++report.iterations;
+    report.residual = correction;
+    if (!(correction < largest_correction)) failure = Failure::too_far;
+    if (correction < options.tolerance) break;
+    if (iteration == options.max_iterations) failure = Failure::no_convergence;
+  }
+  if (failure != Failure::none) return failure;
+  finish(dt);
+  report.contacts = 0;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (!(impulse[c][0] > 0)) continue;
+    ++report.contacts;
+    report.penetration_max = std::max(report.penetration_max, -contacts[c].gap / smallest_radius_);
+  }
+  return Failure::none;
+}
+
+/// A = M/dt^2 + K(x) + c p/l on the outline; its Cholesky factor and the compliance of the outlines.
+ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, SoftStepReport& report) {
+  std::vector<Vec<2>> pressure(grains.outline_size());  // p/l on both components
+  if (!contacts.empty()) {
+    const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
+    for (int v = 0; v < grains.outline_size(); ++v) {
+      const int g = grains.grain_of_vertex(v);
+      const double length =
+          2 * std::numbers::pi * grains.radius(g) / (grains.outline_end(g) - grains.outline_begin(g));
+      pressure[v] = (proximal * norm(force[v]) / length) * Vec<2>{1, 1};
+    }
+  }
+  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+    const GrainBatch& batch = grains.batches[b];
+    BatchedCholesky& A = matrix_[b];
+    A.clear();
+    add_stiffness(grains, batch, A);
+    WideVectors diagonal(batch.position.size());
+    grains.scatter_outline(pressure, batch, diagonal);
+    for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
+      const Wide entry = grains.node_mass(batch, i) * Wide(1 / (dt * dt)) + diagonal[i][0];
+      A.add(i, i, {entry, 0.0, 0.0, entry});
+    }
+    ++report.factorisations;
+    if (const unsigned failed = A.factor(); (failed_grain_ = grain_in(batch, failed)) >= 0)
+      return Failure::indefinite_matrix;
+    A.kept_inverse(compliance_[b]);
+  }
+  return Failure::none;
+}
+
+/// r = f_ext - f_int - M (x - x_n - dt v_n)/dt^2, and A^-1 r on the outlines.
+ImplicitDynamics::Failure ImplicitDynamics::residual(double dt) {
+  outline_increment_.assign(grains.outline_size(), {});
+  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+    const GrainBatch& batch = grains.batches[b];
+    if (const unsigned inverted = internal_force(grains, batch, force_[b]);
+        (failed_grain_ = grain_in(batch, inverted)) >= 0)
+      return Failure::inverted_point;
+    WideVectors& r = force_[b];
+    for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
+      const Wide m = grains.node_mass(batch, i), rate = m * Wide(1 / (dt * dt));
+      for (int d = 0; d < 2; ++d) {
+        const Wide inertia =
+            rate * (batch.position[i][d] - start_[b][i][d] - Wide(dt) * velocity_start_[b][i][d]);
+        r[i][d] = m * Wide(options.gravity[d]) - r[i][d] - inertia;
+      }
+    }
+    right_[b] = r;
+    matrix_[b].solve(numbers(right_[b]));
+    const ReferenceGrid& grid = batch.topology->grid;
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+      for (int i = grid.outline_begin; i < grid.nodes(); ++i)
+        outline_increment_[grains.outline_begin(batch.grain[lane]) + i - grid.outline_begin] = {
+            right_[b][i][0][lane], right_[b][i][1][lane]};
+  }
+  return Failure::none;
+}
+
+std::vector<double> ImplicitDynamics::friction_of_contacts() const {
+  std::vector<double> friction;
+  for (const OutlineContact& c : contacts)
+    friction.push_back(c.wall >= 0 ? options.wall_friction : options.friction);
+  return friction;
+}
+
+/// Contacts at the present positions, and their impulses by NLGS with warm start.
+void ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
+  grains.gather_outline(outline_.position);
+  std::vector<OutlineContact> found = detect_outline_contacts(grains, outline_, margin_);
+  impulse = carried_impulses(grains, contacts, impulse, found);
+  contacts = std::move(found);
+  ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt);
+  for (int c = 0; c < system.size(); ++c)
+    if (impulse[c][0] > 0) system.apply_impulse(c, impulse[c]);
+  SolverOptions solver = options.solver;
+  solver.velocity_scale = mean_radius_ / dt;
+  report.sweeps += solve_nlgs<2>(system, std::span(impulse), friction_of_contacts(), solver).sweeps;
+}
+
+/// x += A^-1 (r + H p/dt). Returns the largest correction [m].
+double ImplicitDynamics::correct() {
+  const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, outline_.dt);
+  double largest = 0;
+  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+    GrainBatch& batch = grains.batches[b];
+    right_[b] = force_[b];
+    grains.scatter_outline(force, batch, right_[b]);
+    matrix_[b].solve(numbers(right_[b]));
+    for (std::size_t i = 0; i < batch.position.size(); ++i) {
+      batch.position[i] += right_[b][i];
+      const Wide square = dot(right_[b][i], right_[b][i]);
+      for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+        if (!(square[lane] <= largest)) largest = square[lane], failed_grain_ = batch.grain[lane];
+    }
+  }
+  return std::sqrt(largest);
+}
+
+/// v = (x - x_n)/dt; the walls' impulses; the contacts as they are at the end.
+void ImplicitDynamics::finish(double dt) {
+  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+    GrainBatch& batch = grains.batches[b];
+    for (std::size_t i = 0; i < batch.position.size(); ++i)
+      batch.velocity[i] = Wide(1 / dt) * (batch.position[i] - start_[b][i]);
+  }
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (contacts[c].wall < 0) continue;
+    const Vec<2>& n = contacts[c].normal;
+    wall_impulse_[contacts[c].wall] -= impulse[c][0] * n + impulse[c][1] * perpendicular(n);
+  }
+  grains.gather_outline(outline_.position);
+  std::vector<OutlineContact> found = detect_outline_contacts(grains, outline_, margin_);
+  impulse = carried_impulses(grains, contacts, impulse, found);
+  contacts = std::move(found);
+}
+
+void ImplicitDynamics::take_back() {
+  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+    grains.batches[b].position = start_[b];
+    grains.batches[b].velocity = velocity_start_[b];
+  }
+  walls = walls_start_;
+}
+
+}  // namespace softgrain

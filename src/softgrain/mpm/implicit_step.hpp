@@ -1,0 +1,83 @@
+#pragma once
+#include <vector>
+
+#include "softgrain/contact/solver_options.hpp"
+#include "softgrain/mpm/elastic_contacts.hpp"
+#include "softgrain/mpm/outline_contacts.hpp"
+#include "softgrain/mpm/soft_grains.hpp"
+
+namespace softgrain {
+
+struct ImplicitOptions {
+  double tolerance = 1e-4;  ///< largest correction of Newton's last iteration, over the mean grain radius
+  int max_iterations = 40;  ///< of Newton's method
+  double proximal =
+      0.5;  ///< c of the term c p/l on the outline's diagonal of the tangent (p/l contact pressure)
+  int max_halvings = 8;                                        ///< of the time step before NumericalError
+  SolverOptions solver{.max_sweeps = 500, .tolerance = 1e-7};  ///< NLGS; in units of mean radius / dt
+  double friction = 0;                                         ///< mu between grains
+  double wall_friction = 0;                                    ///< mu against walls
+  Vec<2> gravity{};                                            ///< [m/s^2]
+};
+
+/// What one step of soft grains did, over all its sub-steps.
+struct SoftStepReport {
+  int iterations = 0;  ///< of Newton's method
+  int sweeps = 0;      ///< of NLGS
+  int factorisations = 0;
+  int rejected = 0;            ///< sub-steps that were taken back
+  int contacts = 0;            ///< that carry impulse at the end
+  double residual = 0;         ///< last correction over the mean radius
+  double penetration_max = 0;  ///< deepest vertex at the end, over the radius of the smallest grain
+  bool converged = false;
+};
+
+/// Soft grains between walls by backward Euler with position-level contact (docs/theory.md, implicit MPM):
+///   M (x - x_n - dt v_n)/dt^2 + f_int(x) = f_ext + H p/dt,   v = (x - x_n)/dt,
+///   0 <= g(x) _|_ p_n >= 0,  |p_t| <= mu p_n.
+/// Newton's method detects contacts anew in every iteration; A = M/dt^2 + K + proximal term is factored once
+/// a step.
+class ImplicitDynamics {
+ public:
+  ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
+                   const ImplicitOptions& implicit_options);
+
+  /// One step of dt; walls move by dt times their velocity. A sub-step that does not converge, inverts a
+  /// point or makes A indefinite is taken back and halved. Raises NumericalError after max_halvings, naming
+  /// the grain.
+  SoftStepReport step(double dt);
+
+  /// Impulse of the grains on a wall in the last step [N s/m].
+  const Vec<2>& wall_impulse(int wall) const { return wall_impulse_[wall]; }
+  double mean_radius() const { return mean_radius_; }
+
+  SoftGrains grains;
+  std::vector<Wall<2>> walls;
+  ImplicitOptions options;
+  std::vector<OutlineContact> contacts;  ///< at the end of the last step
+  std::vector<Vec<2>> impulse;           ///< theirs (p_n, p_t) [N s/m]
+
+ private:
+  enum class Failure { none, inverted_point, indefinite_matrix, too_far, no_convergence };
+
+  Failure try_step(double dt, SoftStepReport& report);
+  Failure factor(double dt, double proximal, SoftStepReport& report);
+  Failure residual(double dt);
+  void solve_contacts(double dt, SoftStepReport& report);
+  double correct();
+  void finish(double dt);
+  void take_back();
+  std::vector<double> friction_of_contacts() const;
+
+  double mean_radius_ = 0, smallest_radius_ = 0, margin_ = 0;
+  std::vector<BatchedCholesky> matrix_;
+  std::vector<OutlineCompliance> compliance_;
+  std::vector<WideVectors> start_, velocity_start_, right_, force_;  // per batch
+  std::vector<Vec<2>> outline_increment_;
+  OutlineState outline_;
+  std::vector<Wall<2>> walls_start_;
+  std::vector<Vec<2>> wall_impulse_;
+  int failed_grain_ = -1;
+};
+
+}  // namespace softgrain

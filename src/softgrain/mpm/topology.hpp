@@ -1,0 +1,29 @@
+#pragma once
+#include <vector>
+
+#include "softgrain/math/block_cholesky.hpp"
+#include "softgrain/mpm/reference_grid.hpp"
+
+namespace softgrain {
+
+/// Where the block K_ab of a cell's stiffness goes in the matrix of the grain.
+struct CellBlock {
+  int block = 0;            ///< number in the BlockPattern
+  bool transposed = false;  ///< it holds K_ab^T
+};
+
+/// All that grains of one shape share, in units of their radius: made once, never changed.
+struct Topology {
+  /// Takes over the grid; finds points, volumes, and the symbolic factorisation with the outline last.
+  explicit Topology(ReferenceGrid reference_grid);
+
+  ReferenceGrid grid;
+  std::vector<MaterialPoint> points;  ///< (4 cells)
+  std::vector<double> node_volume;    ///< (nodes) sum_p N_i V_p [R^2]: the lumped mass over rho R^2
+  double area = 0;                    ///< of the outline [R^2]
+  BlockPattern pattern;
+  std::vector<CellBlock>
+      cell_blocks;  ///< (10 cells): the pairs (a, b), b <= a, of the four nodes of each cell
+};
+
+}  // namespace softgrain
