@@ -11,10 +11,11 @@
 
 namespace softgrain {
 
-/// Nesterov's accelerated projected gradient for contact, with gradient restart (O'Donoghue & Candes 2015):
+/// Nesterov's accelerated projected gradient with gradient restart (theory (24)-(25); O'Donoghue & Candes
+/// 2015), carried over to friction by De Saxce's shift s n of the velocity:
 ///   y = p_k + beta (p_k - p_k-1),  p_k+1 = P(y - (u(y) + s n) / (L w_c)),  s -> mu |u_t|,
-/// P the projection on the Coulomb cone, w_c = trace(W_cc)/Dim the scale of a contact and L the largest
-/// eigenvalue of W in that scale. s is De Saxce's shift: a fixed point, followed as the iteration goes, more
+/// P the projection on the Coulomb cone, w_c = trace(W_cc)/Dim the scale of a contact. L is the largest
+/// curvature of W in that scale that a step has met. s is a fixed point, followed as the iteration goes, more
 /// slowly whenever the violation stops falling. One product with W per iteration, since u(y) follows from
 /// u(p_k) and u(p_k-1).
 template <int Dim, ContactSystem<Dim> System>
@@ -48,8 +49,8 @@ class NesterovIteration {
     const bool uphill = move_impulses((momentum_ - 1) / next) > 0;
     momentum_ = next;
     const double curvature = update_velocities();
-    const bool too_long = curvature > largest_eigenvalue_;
-    if (too_long) largest_eigenvalue_ = 1.05 * curvature;
+    const bool too_long = curvature > curvature_;
+    if (too_long) curvature_ = 1.05 * curvature;
     if (uphill || too_long) forget_momentum();
     if (++iterations_ % 100 == 0) adapt_shift_rate();
   }
@@ -78,7 +79,7 @@ class NesterovIteration {
       Vec<Dim> gradient = u_y_[c];
       gradient[0] += shift_[c];
       const Vec<Dim> next =
-          project_on_coulomb_cone(y - (1 / (largest_eigenvalue_ * scale_[c])) * gradient, friction_[c]);
+          project_on_coulomb_cone(y - (1 / (curvature_ * scale_[c])) * gradient, friction_[c]);
       step_[c] = next - y;
       const Vec<Dim> dp = next - p_[c];
       ascent -= scale_[c] * dot(step_[c], dp);
@@ -89,7 +90,7 @@ class NesterovIteration {
     return ascent;
   }
 
-  /// u <- u(p); returns the curvature along the step p - y, a lower bound of the largest eigenvalue.
+  /// u <- u(p); returns the curvature of W along the step p - y, in the scale of D.
   double update_velocities() {
     double work = 0, length = 0;
     for (int c = 0; c < system_.size(); ++c) {
@@ -119,14 +120,13 @@ class NesterovIteration {
   std::vector<Vec<Dim>> p_before_, u_, u_before_;
   std::vector<Vec<Dim>> u_y_, step_;  // velocity at y, and p_k+1 - y
   std::vector<double> scale_, shift_;
-  double largest_eigenvalue_ = 1;  // L so far
+  double curvature_ = 1;  // L
   double momentum_ = 1, shift_rate_ = 1, best_ = 0;
   int iterations_ = 0;
 };
 
 /// Solves as solve_nlgs does, and with its contract, by NesterovIteration; a sweep is an iteration. Several
-/// times fewer of them below a tolerance of about 1e-4, but a third more work in each. Looks at the violation
-/// every check_every iterations.
+/// times fewer of them below a tolerance of about 1e-4. Allocates its vectors once, at the start.
 template <int Dim, ContactSystem<Dim> System>
 SolverReport solve_nesterov(System& system, std::span<Vec<Dim>> impulse, std::span<const double> friction,
                             const SolverOptions& options) {
@@ -139,7 +139,7 @@ SolverReport solve_nesterov(System& system, std::span<Vec<Dim>> impulse, std::sp
     iteration.advance();
     if (sweep % options.check_every != 0 && sweep != options.max_sweeps) continue;
     report = report_of(iteration.violation(), sweep, scale, options);
-    if (!std::isfinite(report.residual_max)) break;
+    if (!std::isfinite(report.residual_mean)) break;
   }
   return report;
 }

@@ -60,7 +60,7 @@ SolverReport solve_nlgs(System& system, std::span<Vec<Dim>> impulse, std::span<c
     else
       violation = nlgs_sweep<Dim>(system, impulse, friction, options.relaxation);
     report = report_of(violation, sweep, scale, options);
-    const bool broken = !std::isfinite(report.residual_max);
+    const bool broken = !std::isfinite(report.residual_mean);
     if (broken || (report.converged && sweep >= options.min_sweeps)) break;
   }
   return report;

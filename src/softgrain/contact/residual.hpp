@@ -15,7 +15,7 @@ namespace softgrain {
 /// impulse alone puts it right, v_c = |W_cc (p_c' - p_c)| [m/s]: zero exactly where the law holds, whatever
 /// the conditioning of W_cc. Without friction v_c = |min(W_nn p_n, u_n)|.
 struct Violation {
-  double sum_of_squares = 0;  ///< of v_c [m^2/s^2]
+  double sum_of_squares = 0;  ///< of v_c [m^2/s^2]; NaN once a contact is
   double max_square = 0;      ///< of v_c [m^2/s^2]
   int contacts = 0;           ///< those that carry impulse or are violated
 
@@ -23,7 +23,7 @@ struct Violation {
   void add(double square, bool carries_impulse) {
     if (!carries_impulse && square == 0) return;
     sum_of_squares += square;
-    max_square = square <= max_square ? max_square : square;  // keeps NaN
+    max_square = std::max(max_square, square);
     ++contacts;
   }
 };

@@ -12,15 +12,15 @@ struct SolverOptions {
                               ///< penetration gained in a step over a diameter. 0: rms of u_c - W_cc p_c at
                               ///< the start, which from p = 0 is q.
   double relaxation = 1;      ///< omega of p <- p + omega (p_new - p), in (0, 2) without friction
-  int check_every = 1;        ///< sweeps between two looks at the residual
+  int check_every = 10;  ///< iterations of Nesterov's method between two looks at the violation; NLGS sees
+                         ///< it in passing, in every sweep
 };
 
 /// What a contact algorithm reached. Not converged is a value, not an exception.
 struct SolverReport {
   int sweeps = 0;
-  double residual_mean =
-      0;  ///< root mean square violation over contacts that carry impulse or are violated [-]
-  double residual_max = 0;  ///< worst contact [-]
+  double residual_mean = 0;  ///< rms violation over contacts that carry impulse or are violated [-]
+  double residual_max = 0;   ///< worst contact [-]
   bool converged = false;
 };
 

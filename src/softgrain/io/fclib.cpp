@@ -165,7 +165,7 @@ void refuse_equality_constraints(const Datasets& file, const std::string& group)
 FclibFile read_problem(const Datasets& file) {
   const bool local = file.has("/fclib_local");
   const std::string group = local ? "/fclib_local" : "/fclib_global";
-  file.check(local || file.has(group), "/fclib_local", "and '/fclib_global' are missing: no FCLIB problem");
+  file.check(local || file.has(group), "/fclib_local", "is missing, and '/fclib_global' too");
   refuse_equality_constraints(file, group);
 
   FclibFile result;
@@ -190,6 +190,7 @@ FclibFile read_problem(const Datasets& file) {
 }  // namespace
 
 FclibFile read_fclib(const std::filesystem::path& file) {
+  require(std::filesystem::is_regular_file(file), "{}: no such file", file.string());
   try {
     return read_problem(Datasets(file));
   } catch (const IoError& error) {  // not HDF5, cut short, damaged: the user's file, not our disk
