@@ -1,0 +1,8 @@
+"""Figures for publication from the directories of runs. On the command line: `softgrain plot DIR...`."""
+
+from .curve import draw_curve
+from .diagnostics import draw_diagnostics
+from .grain import draw_grain
+from .style import save, style
+
+__all__ = ["draw_curve", "draw_diagnostics", "draw_grain", "save", "style"]

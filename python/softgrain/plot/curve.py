@@ -1,0 +1,158 @@
+"""The stress-strain curve of one grain between two plates, of one run or of several laid over one another."""
+
+from dataclasses import dataclass
+from itertools import cycle
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from .. import NotRecorded, measure
+from .style import BLUE, GREEN, GREY, INK, MM, RUN_COLOURS, SINGLE_COLUMN, VERMILLION
+
+HEIGHT = 62  # [mm]
+BRANCH_COLOURS = {measure.UNLOADING: VERMILLION, measure.RELOADING: GREEN}
+
+
+@dataclass(frozen=True)
+class Curve:
+    """What is drawn of one run."""
+
+    label: str
+    strain: np.ndarray
+    stress: np.ndarray  # in units of `scale`
+    scale: float  # 1 MPa, or sigma_I [Pa]
+    characteristic_stress: float | None  # sigma_I [Pa]
+
+
+def draw_curve(runs, labels=None, normalise=False):
+    """sigma(eps): thin line, the samples; thick line, their mean over 1 % of strain; sigma_I; the plateau."""
+    labels = labels or [run.name for run in runs]
+    curves = [_curve(run, label, normalise) for run, label in zip(runs, labels)]
+    characteristic = _common_characteristic_stress(curves)
+    figure = Figure(figsize=(SINGLE_COLUMN * MM, HEIGHT * MM), layout="constrained")
+    axes, upper_axes = _axes(figure, curves, characteristic)
+    if len(curves) == 1:
+        _draw_branches(axes, curves[0])
+    else:
+        _draw_overlay(axes, curves)
+    if characteristic is not None:
+        _draw_characteristic_stress(upper_axes, characteristic, normalise)
+    axes.set_xlabel(r"cumulative axial strain $\varepsilon$")
+    axes.set_ylabel(r"vertical stress $\sigma/\sigma_I$" if normalise else r"vertical stress $\sigma$ [MPa]")
+    axes.set_xlim(0, max(c.strain.max() for c in curves) * 1.02)
+    handles, words = axes.get_legend_handles_labels()
+    upper_axes.legend(handles, words, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.2, borderpad=0,
+                      ncols=3 if len(curves) == 1 else 1, columnspacing=1.2)
+    return figure
+
+
+def _curve(run, label, normalise):
+    stress = measure.vertical_stress(run.series)
+    sigma_i = measure.characteristic_stress(run)
+    if "strain" not in run.series:
+        raise NotRecorded(f"{run.path}: series.csv has no strain")
+    if normalise and sigma_i is None:
+        raise NotRecorded(f"{run.path}: sigma_I needs bpm.attraction in the case and a snapshot")
+    scale = sigma_i if normalise else 1e6
+    return Curve(label, run.series["strain"], stress / scale, scale, sigma_i)
+
+
+def _common_characteristic_stress(curves):
+    """sigma_I in the units of the curves, if it is the same in all of them within 5 %; else None."""
+    values = [c.characteristic_stress / c.scale for c in curves if c.characteristic_stress]
+    return np.mean(values) if values and max(values) < 1.05 * min(values) else None
+
+
+def _axes(figure, curves, characteristic):
+    """One axes; if sigma_I lies far above the curves, also a strip around it, above a break, to scale."""
+    top = 1.22 * max(c.stress.max() for c in curves) or 1.0
+    if characteristic is None or characteristic < 1.6 * top:
+        axes = figure.add_subplot(ylim=(0, max(top, 1.15 * (characteristic or 0))))
+        return axes, axes
+    height = 0.22 * top
+    strip, axes = figure.subplots(2, sharex=True, height_ratios=(height, top))
+    axes.set_ylim(0, top)
+    strip.set_ylim(characteristic - 0.4 * height, characteristic + 0.6 * height)
+    strip.set_yticks([characteristic], [f"{characteristic:.2f}"])
+    _mark_break(axes, strip)
+    return axes, strip
+
+
+def _mark_break(below, above):
+    below.spines.top.set_visible(False)
+    above.spines.bottom.set_visible(False)
+    below.tick_params(top=False)
+    above.tick_params(bottom=False, labelbottom=False)
+    slash = dict(marker=[(-1, -0.5), (1, 0.5)], ms=5, mew=0.6, ls="none", color=INK, clip_on=False)
+    below.plot([0, 1], [1, 1], transform=below.transAxes, **slash)
+    above.plot([0, 1], [0, 0], transform=above.transAxes, **slash)
+
+
+def _draw_branches(axes, curve):
+    """One run: each kind of branch in its colour; the plateau and the unloading slopes in words."""
+    strain, stress = curve.strain, curve.stress
+    branches = measure.branches(strain)
+    for branch in branches:
+        look = dict(color=BLUE, alpha=0.4, lw=0.4)
+        if branch.kind != measure.LOADING:
+            look = dict(color=BRANCH_COLOURS[branch.kind], lw=0.8)
+        axes.plot(strain[branch.samples], stress[branch.samples], **look)
+    eps, sigma = measure.envelope(strain, stress)
+    axes.plot(eps, measure.moving_mean(eps, sigma), color=BLUE, lw=1.3, label="loading (mean over 1 %)")
+    for kind, colour in BRANCH_COLOURS.items():
+        if any(branch.kind == kind for branch in branches):
+            axes.plot([], [], color=colour, lw=0.8, label=kind)
+    _draw_plateau(axes, curve)
+    _write_slopes(axes, curve)
+
+
+def _draw_plateau(axes, curve):
+    flat = measure.plateau(curve.strain, curve.stress)
+    if flat is None:
+        return
+    axes.hlines(flat.mean, *flat.strain_range, color=INK, lw=0.6, ls=(0, (4, 2)), zorder=3)
+    text = f"plateau {_stress_text(flat.mean, curve)}"
+    _write(axes, text, (0.98, 1), (0, -3), "axes fraction", ha="right", va="top")
+
+
+def _write_slopes(axes, curve):
+    unit = r"$\,\sigma_I$" if curve.scale == curve.characteristic_stress else " MPa"
+    for unloading in measure.unloadings(curve.strain, curve.stress):
+        digits = 1 if unloading.slope < 10 else 0
+        to_the_left = unloading.reversal > 0.7 * curve.strain.max()
+        foot = unloading.end if to_the_left else unloading.reversal
+        _write(axes, f"slope {unloading.slope:.{digits}f}{unit}", (foot, 0.08 * axes.get_ylim()[1]),
+               (-3 if to_the_left else 3, 0), ha="right" if to_the_left else "left",
+               color=BRANCH_COLOURS[measure.UNLOADING])
+
+
+def _write(axes, text, point, offset, coordinates="data", **look):
+    """Small text at `offset` [points] from a point."""
+    axes.annotate(text, point, xycoords=coordinates, xytext=offset, textcoords="offset points",
+                  fontsize=7, **look)
+
+
+def _draw_overlay(axes, curves):
+    for curve, colour in zip(curves, cycle(RUN_COLOURS)):
+        axes.plot(curve.strain, curve.stress, color=colour, alpha=0.35, lw=0.4)
+        eps, sigma = measure.envelope(curve.strain, curve.stress)
+        flat = measure.plateau(curve.strain, curve.stress)
+        words = f": plateau {_stress_text(flat.mean, curve)}" if flat else ""
+        axes.plot(eps, measure.moving_mean(eps, sigma), color=colour, lw=1.2, label=curve.label + words)
+
+
+def _stress_text(stress, curve):
+    """A stress in MPa and as a share of sigma_I, as far as each is known."""
+    pascal = stress * curve.scale
+    text = f"{pascal / 1e6:.3f} MPa"
+    if curve.characteristic_stress is None:
+        return text
+    return rf"{text} = {pascal / curve.characteristic_stress:.2f}$\,\sigma_I$"
+
+
+def _draw_characteristic_stress(axes, value, normalise):
+    """The line at sigma_I = F0/<a0>, the paper's characteristic stress."""
+    axes.axhline(value, color=GREY, lw=0.8, ls=(0, (1, 1.2)))
+    equals = "" if normalise else f" = {value:.2f} MPa"
+    text = rf"characteristic stress $\sigma_I = F_0/\langle a_0\rangle${equals}"
+    _write(axes, text, (0.98, value), (0, 1.5), ("axes fraction", "data"), ha="right", va="bottom")

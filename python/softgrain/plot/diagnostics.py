@@ -1,0 +1,78 @@
+"""Whether a run can be trusted: energies, plate forces, sweeps, residual and overlap over strain."""
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator
+
+from .. import NotRecorded
+from .style import BLUE, INK, MM, ORANGE, SINGLE_COLUMN, VERMILLION
+
+
+class Panel(NamedTuple):
+    label: str
+    logarithmic: bool
+    lines: dict  # column of series.csv -> (label, colour)
+
+
+PANELS = (
+    Panel("energy [J/m]", False, {"wall_work": ("plates' work", INK), "dissipation": ("dissipated", ORANGE),
+                                  "attraction_energy": ("attraction (change)", BLUE)}),
+    Panel("kinetic\nenergy [J/m]", True, {"kinetic_energy": ("", VERMILLION)}),
+    Panel("force on\nplate [N/m]", False, {"force_top": ("top", VERMILLION),
+                                           "force_bottom": ("bottom", BLUE)}),
+    Panel("sweeps\nper step", False, {"sweeps": ("", BLUE)}),
+    Panel("residual", True, {"residual_max": ("worst", VERMILLION),
+                             "residual_mean": ("mean", BLUE)}),
+    Panel("overlap\n/ mean radius", True, {"overlap_max": ("worst", VERMILLION),
+                                            "overlap_mean": ("mean", BLUE)}),
+)
+FROM_START = {"attraction_energy"}  # energies known up to a constant
+PANEL_HEIGHT, AXIS_HEIGHT = 23, 9  # [mm]
+
+
+def draw_diagnostics(run):
+    """One panel above the other, for each of PANELS that series.csv has a column for."""
+    series = run.series
+    panels = [panel for panel in PANELS if any(name in series for name in panel.lines)]
+    if not panels or "strain" not in series:
+        raise NotRecorded(f"{run.path}: series.csv has nothing to draw over strain")
+    size = (SINGLE_COLUMN * MM, (PANEL_HEIGHT * len(panels) + AXIS_HEIGHT) * MM)
+    figure = Figure(figsize=size, layout="constrained")
+    grid = figure.subplots(len(panels), sharex=True, squeeze=False)
+    for axes, letter, panel in zip(grid[:, 0], "abcdef", panels):
+        _draw_panel(axes, series, panel)
+        axes.annotate(f"({letter})", (0, 1), xytext=(3, -3), xycoords="axes fraction",
+                      textcoords="offset points", va="top")
+    grid[-1, 0].set_xlabel(r"cumulative axial strain $\varepsilon$")
+    grid[-1, 0].set_xlim(0, series["strain"].max() * 1.02)
+    figure.align_ylabels()
+    return figure
+
+
+def _draw_panel(axes, series, panel):
+    for column, (label, colour) in panel.lines.items():
+        if column not in series:
+            continue
+        values = series[column] - (series[column][0] if column in FROM_START else 0)
+        # A logarithmic axis has no place for 0: leave a gap there.
+        values = np.where(values > 0, values, np.nan) if panel.logarithmic else values
+        axes.plot(series["strain"], values, color=colour, lw=0.5, label=label)
+    axes.set_ylabel(panel.label)
+    if panel.logarithmic:
+        axes.set_yscale("log")
+        axes.yaxis.set_major_locator(LogLocator(numticks=5))
+    else:
+        axes.yaxis.set_major_locator(MaxNLocator(4))
+        axes.set_ylim(bottom=min(0, axes.get_ylim()[0]))
+    _leave_headroom(axes, share=0.3)
+    if any(label for label, _ in panel.lines.values()):
+        axes.legend(loc="upper right", ncols=len(panel.lines), columnspacing=1, borderaxespad=0.2)
+
+
+def _leave_headroom(axes, share):
+    """Stretches the y axis upwards so that letter and key lie above the curves."""
+    scale = axes.yaxis.get_transform()
+    low, high = scale.transform(axes.get_ylim())
+    axes.set_ylim(top=scale.inverted().transform(high + share * (high - low)))

@@ -1,0 +1,47 @@
+"""Which snapshots tell the story of a run: the start, each reversal, each unloaded state, the end."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import measure
+
+MOST_STAGES = 6
+
+
+class Stage(NamedTuple):
+    snapshot: int
+    strain: float | None  # None if series.csv does not say
+    stress: float | None  # [Pa]
+
+
+def choose_stages(run, times):
+    """The snapshots of the moments that matter, each once, in order; evenly spaced ones if there are none."""
+    times = np.asarray(times)
+    chosen = _snapshots_of_moments(run.series, times) if {"time", "strain"} <= run.series.keys() else set()
+    if len(chosen) < min(3, times.size):
+        evenly = np.linspace(0, times.size - 1, min(MOST_STAGES, times.size))
+        chosen = set(evenly.round().astype(int).tolist())
+    return [_stage(run.series, snapshot, times[snapshot]) for snapshot in sorted(chosen)]
+
+
+def _snapshots_of_moments(series, times):
+    """The first and the last snapshot; of each unloading the last one before it, the one nearest its end."""
+    time = series["time"]
+    sampling_interval = np.diff(time).max(initial=0)
+    chosen = {0, times.size - 1}
+    for branch in measure.branches(series["strain"]):
+        if branch.kind == measure.UNLOADING and len(chosen) + 2 <= MOST_STAGES:
+            # The series knows the moment of the reversal only to one interval.
+            loaded = np.searchsorted(times, time[branch.first] + 0.5 * sampling_interval) - 1
+            chosen |= {max(0, int(loaded)), int(np.argmin(abs(times - time[branch.last])))}
+    return chosen
+
+
+def _stage(series, snapshot, time):
+    def now(column):
+        known = {"time", column} <= series.keys()
+        return float(np.interp(time, series["time"], series[column])) if known else None
+
+    stresses = [stress for stress in map(now, measure.PLATE_STRESSES) if stress is not None]
+    return Stage(snapshot, now("strain"), float(np.mean(stresses)) if stresses else None)

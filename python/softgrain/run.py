@@ -1,0 +1,123 @@
+"""A run's directory as Python objects: the case, the provenance, the series and the snapshots. SI units."""
+
+import json
+import tomllib
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+
+class NotRecorded(LookupError):
+    """The run lacks what was asked of it."""
+
+
+class NotARun(ValueError):
+    """The directory holds no run of softgrain."""
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """The state at one time: what can be drawn. Arrays are indexed by particle, by contact or by wall."""
+
+    step: int
+    time: float  # [s]
+    particles: dict  # position (n, 2) [m], radius (n,) [m], and any field by particle
+    contacts: dict = field(default_factory=dict)  # pair (m, 2), force (m,) [N/m], compression positive
+    walls: np.ndarray = field(default_factory=lambda: np.empty((0, 4)))  # x0 y0 x1 y1 [m]
+
+    @classmethod
+    def read(cls, path):
+        """Reads one snapshot file. Raises OSError if it is damaged or missing."""
+        import h5py
+
+        with h5py.File(path, "r") as file:
+            if "scene/particles/position" not in file:
+                raise OSError(f"{path}: no snapshot: it has no /scene/particles/position")
+            scene = file["scene"]
+            walls = scene["walls"][()] if "walls" in scene else ()
+            return cls(
+                step=int(file.attrs.get("step", 0)),
+                time=float(file.attrs.get("time", 0)),
+                particles=_arrays(scene, "particles"),
+                contacts=_arrays(scene, "contacts"),
+                walls=np.asarray(walls, float).reshape(-1, 4),
+            )
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run's directory. `run[i]` reads snapshot i; `len(run)` counts them; the rest is read when asked."""
+
+    path: Path
+
+    @property
+    def name(self):
+        return self.path.resolve().name
+
+    @cached_property
+    def case(self):
+        """The resolved case, SI."""
+        return tomllib.loads((self.path / "case.toml").read_text())
+
+    @cached_property
+    def info(self):
+        """The provenance (run.json); empty if the run never wrote it."""
+        path = self.path / "run.json"
+        return json.loads(path.read_text()) if path.exists() else {}
+
+    @property
+    def series(self):
+        """Column name (without unit) -> array over the samples."""
+        return self._table[0]
+
+    @property
+    def units(self):
+        """Column name -> unit, "" for a pure number."""
+        return self._table[1]
+
+    @cached_property
+    def snapshots(self):
+        """Paths of the snapshots, oldest first."""
+        return sorted((self.path / "snap").glob("s*.h5"))
+
+    @cached_property
+    def _table(self):
+        return _read_series(self.path / "series.csv")
+
+    def __len__(self):
+        return len(self.snapshots)
+
+    def __getitem__(self, index):
+        return Snapshot.read(self.snapshots[index])
+
+
+def open_run(path):
+    """The run in directory `path`. Raises NotARun if there is none."""
+    path = Path(path)
+    if not (path / "case.toml").is_file():
+        raise NotARun(f"'{path}' is not the directory of a run: it has no case.toml")
+    return Run(path)
+
+
+def _arrays(scene, name):
+    if name not in scene:
+        return {}
+    arrays = {key: data[()] for key, data in scene[name].items()}
+    # A scalar field may be stored as one column.
+    return {key: a[:, 0] if a.ndim == 2 and a.shape[1] == 1 else a for key, a in arrays.items()}
+
+
+def _read_series(path):
+    """Columns and units of a table with the header `name[unit],...`; none before its first row.
+
+    A last line without its newline is torn and left out."""
+    if not path.exists():
+        return {}, {}
+    complete_lines = path.read_text().split("\n")[:-1]
+    header, *rows = [line.split(",") for line in complete_lines] or [[]]
+    names = [cell.split("[")[0].strip() for cell in header]
+    units = [cell.partition("[")[2].rstrip("] ") for cell in header]
+    columns = np.array(rows, float).T  # no row, no column
+    return dict(zip(names, columns)), dict(zip(names, units))

@@ -1,0 +1,211 @@
+"""The figures: what they show, how large they are, and that they depend on nothing but the run."""
+
+import contextlib
+import io
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from itertools import combinations
+from pathlib import Path
+
+import matplotlib.axis
+import matplotlib.text
+import numpy as np
+import synthetic
+from PIL import Image
+
+import softgrain
+from softgrain import plot
+from softgrain.plot.__main__ import main
+from softgrain.plot.rows import Forces, Layers, Pressure
+from softgrain.plot.stages import choose_stages
+
+PROGRAM = Path(__file__).resolve().parents[1] / "plot.py"
+
+
+def drawn_texts(figure):
+    """Every text but the labels of ticks beyond the limits of their axis, which exist and are not drawn."""
+    ticks = figure.findobj(matplotlib.axis.Tick)
+    labels = {label for tick in ticks for label in (tick.label1, tick.label2)}
+    texts = [text for text in figure.findobj(matplotlib.text.Text) if text not in labels]
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis) if axes.axison else ():
+            low, high = sorted(axis.get_view_interval())
+            texts += [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+    return [text for text in texts if text.get_visible() and text.get_text()]
+
+
+class Temporary(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+
+    def write(self, name="squeeze", **options):
+        return synthetic.write_run(self.folder / name, **options)
+
+    def plot(self, *arguments):
+        """(exit code, names of the files written, stderr)."""
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            code = main(["--dpi=50", *map(str, arguments)])
+        return code, [Path(line).name for line in out.getvalue().split()], err.getvalue()
+
+
+class Program(Temporary):
+    def test_one_run_gives_three_figures_beside_its_results(self):
+        run = self.write()
+        code, files, _ = self.plot(run)
+        self.assertEqual((code, files), (0, ["curve.png", "grain.png", "diagnostics.png"]))
+        self.assertTrue((run / "figures" / "grain.png").exists())
+
+    def test_two_runs_share_one_curve_and_keep_their_own_grains(self):
+        code, files, _ = self.plot(self.write("slow"), self.write("fast"), "-o", self.folder / "both")
+        self.assertEqual(code, 0)
+        self.assertEqual(sorted(files), ["curve.png", "diagnostics-fast.png", "diagnostics-slow.png",
+                                         "grain-fast.png", "grain-slow.png"])
+
+    def test_a_figure_that_the_data_do_not_allow_is_named_and_the_others_are_drawn(self):
+        code, files, err = self.plot(self.write(snapshots=0))
+        self.assertEqual((code, files), (0, ["curve.png", "diagnostics.png"]))
+        self.assertIn("no grain: ", err)
+        code, files, err = self.plot(self.folder / "squeeze", "--kind", "grain")
+        self.assertEqual((code, files), (2, []))
+
+    def test_what_is_missing_from_a_run_is_not_missed(self):
+        for number, lacking in enumerate((
+            dict(columns=("strain", "stress_bottom[Pa]")),
+            dict(columns=("time[s]", "strain", "stress_top[Pa]", "something_new[K]")),
+            dict(fields=()),
+            dict(fields=(), contacts=False),
+            dict(snapshots=1),
+            dict(force=0.0),
+        )):
+            with self.subTest(lacking):
+                code, files, _ = self.plot(self.write(str(number), **lacking), "--kind", "grain")
+                self.assertEqual((code, files), (0, ["grain.png"]))
+                self.assertEqual(self.plot(self.folder / str(number), "--kind", "curve")[0], 0)
+
+    def test_mistakes_end_with_2_and_damaged_files_with_4(self):
+        code, _, err = self.plot(self.folder / "nothing")
+        self.assertEqual(code, 2)
+        self.assertIn("case.toml", err)
+        run = self.write()
+        softgrain.open(run).snapshots[0].write_bytes(b"not HDF5")
+        self.assertEqual(self.plot(run)[0], 4)
+
+    def test_a_python_without_its_packages_names_the_packages_to_install(self):
+        for package in ("matplotlib", "h5py", "numpy"):
+            stub = self.folder / package / f"{package}.py"
+            stub.parent.mkdir()
+            stub.write_text(f"raise ImportError('No module named {package}')")
+            environment = {**os.environ, "PYTHONPATH": str(stub.parent)}
+            result = subprocess.run([sys.executable, PROGRAM, "RUN"], env=environment,
+                                    capture_output=True, text=True)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(f"No module named {package}", result.stderr)
+            self.assertIn("apt install python3-matplotlib python3-h5py", result.stderr)
+            self.assertNotIn("Traceback", result.stderr)
+
+
+class Files(Temporary):
+    def test_the_same_run_gives_the_same_bytes(self):
+        run = self.write()
+        for suffix in ("png", "svg", "pdf"):
+            for folder in ("first", "second"):
+                self.plot(run, "-o", self.folder / folder, "--format", suffix, "--kind", "grain")
+            first, second = (self.folder / folder / f"grain.{suffix}" for folder in ("first", "second"))
+            self.assertEqual(first.read_bytes(), second.read_bytes(), suffix)
+
+    def test_a_png_is_as_wide_as_a_column_and_says_where_it_comes_from(self):
+        self.plot(self.write(), "-o", self.folder, "--dpi=300")
+        for name, column in (("curve", 85), ("diagnostics", 85), ("grain", 180)):
+            with Image.open(self.folder / f"{name}.png") as image:
+                width = image.width / image.info["dpi"][0] * 25.4  # [mm]
+                self.assertLess(abs(width - column), 0.2)
+                self.assertIn("softgrain 9.8.7 (abc123)", image.info["Software"])
+                self.assertRegex(image.info["Source"], "squeeze: case sha256 [0-9a-f]{16}")
+
+
+class Pictures(Temporary):
+    def open(self, *arguments, **options):
+        return softgrain.open(self.write(*arguments, **options))
+
+    def assert_texts_apart(self, figure):
+        """No two words of the figure overlap, and all lie on the page."""
+        figure.draw_without_rendering()
+        boxes = [(text.get_text(), text.get_window_extent()) for text in drawn_texts(figure)]
+        for (a, box_a), (b, box_b) in combinations(boxes, 2):
+            overlap = np.minimum(box_a.max, box_b.max) - np.maximum(box_a.min, box_b.min)
+            self.assertFalse((overlap > 1).all(), f"{a!r} overlaps {b!r}")
+        for text, box in boxes:
+            inside = (box.min >= -1).all() and (box.max <= np.array(figure.bbox.max) + 1).all()
+            self.assertTrue(inside, f"{text!r} leaves the page")
+
+    def test_no_word_covers_another(self):
+        run, other = self.open(), self.open("a run with quite a long name")
+        with plot.style():
+            for figure in (
+                plot.draw_curve([run]),
+                plot.draw_curve([run], normalise=True),
+                plot.draw_curve([run, other]),
+                plot.draw_grain(run),
+                plot.draw_diagnostics(run),
+            ):
+                self.assert_texts_apart(figure)
+
+    def test_the_curve_says_its_plateau_and_the_characteristic_stress(self):
+        with plot.style():
+            figure = plot.draw_curve([self.open()])
+        words = " ".join(text.get_text() for text in figure.findobj(matplotlib.text.Text))
+        self.assertIn("plateau 0.080 MPa = 0.16", words)
+        self.assertIn("0.50 MPa", words)
+        self.assertIn("slope 10 MPa", words)
+
+    def test_one_colour_range_serves_the_whole_run(self):
+        run = self.open()
+        snapshots = [run[i] for i in range(len(run))]
+        quiet, loud = snapshots[0], snapshots[1]
+        quiet.particles["pressure"] = np.full(50, 1e3)
+        loud.particles["pressure"] = np.linspace(0, 2e6, 50)
+        norm = Pressure([quiet, loud]).scale.norm
+        self.assertEqual(norm.vmin, 0)
+        self.assertAlmostEqual(norm.vmax, 1.95, delta=0.1)
+
+    def test_tension_and_pressure_are_coloured_symmetrically_about_zero(self):
+        norm = Pressure([self.open()[0]]).scale.norm
+        self.assertEqual(norm.vmin, -norm.vmax)
+
+    def test_a_snapshot_before_the_first_step_does_not_set_the_scale(self):
+        run = self.open()
+        first, second = run[0], run[1]
+        first.particles["pressure"] = np.full(len(first.particles["radius"]), -9e6)
+        first.contacts.update(pair=np.empty((0, 2), int), force=np.empty(0))
+        self.assertLess(Pressure([first, second]).scale.norm.vmax, 2)
+
+    def test_layers_go_with_their_particles(self):
+        run = self.open()
+        layers = Layers([run[0], run[1]])
+        height = run[0].particles["position"][:, 1]
+        self.assertTrue((np.diff(layers.layer[np.argsort(height)]) >= 0).all())
+        self.assertEqual(set(layers.layer), set(range(Layers.count)))
+
+    def test_forces_need_contacts(self):
+        run = self.open(contacts=False)
+        with self.assertRaises(softgrain.NotRecorded):
+            Forces([run[0]])
+
+    def test_the_moments_shown_are_start_reversal_unloaded_and_end(self):
+        run = self.open(snapshots=0)
+        # Samples 0, 90 (loaded, 0.090), 100 (the reversal), 108, 112 (unloaded, 0.088), 200, and the last.
+        times = 1e-3 * np.array([0, 90, 100, 108, 112, 200, 224])
+        stages = choose_stages(run, times)
+        self.assertEqual([s.snapshot for s in stages], [0, 2, 4, 6])
+        np.testing.assert_allclose([s.strain for s in stages], [0, 0.1, 0.088, 0.2], atol=1e-9)
+        np.testing.assert_allclose([s.stress for s in stages], [0, 0.08e6, 0, 0.08e6], atol=1)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,71 @@
+"""The reader, against files written here with csv text and h5py."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import synthetic
+
+import softgrain
+
+
+class Reading(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name) / "squeeze"
+
+    def test_a_run_knows_its_case_its_provenance_and_its_name(self):
+        run = softgrain.open(synthetic.write_run(self.folder))
+        self.assertEqual(run.name, "squeeze")
+        self.assertEqual(run.case["bpm"]["attraction"], 100)
+        self.assertEqual(run.info["program"]["version"], "9.8.7")
+
+    def test_columns_are_found_by_name_and_their_units_beside_them(self):
+        synthetic.write_run(self.folder, snapshots=0)
+        text = "step,strain,stress_top[Pa],odd[N/m]\n0,0,0,1\n10,0.5,2e5,nan\n"
+        (self.folder / "series.csv").write_text(text)
+        run = softgrain.open(self.folder)
+        np.testing.assert_array_equal(run.series["stress_top"], [0, 2e5])
+        np.testing.assert_array_equal(run.series["odd"], [1, np.nan])
+        self.assertEqual(run.units, {"step": "", "strain": "", "stress_top": "Pa", "odd": "N/m"})
+
+    def test_a_last_line_that_was_cut_short_is_left_out(self):
+        synthetic.write_run(self.folder, snapshots=0)
+        for torn in ("20,0.", "20,0.7,3", "20,0.7,"):
+            (self.folder / "series.csv").write_text("step,strain,stress_top[Pa]\n0,0,0\n10,0.5,2e5\n" + torn)
+            self.assertEqual(softgrain.open(self.folder).series["strain"].tolist(), [0, 0.5])
+
+    def test_a_run_that_has_only_begun_is_empty_but_readable(self):
+        self.folder.mkdir()
+        (self.folder / "case.toml").write_text("")
+        run = softgrain.open(self.folder)
+        self.assertEqual((len(run), run.series, run.info), (0, {}, {}))
+        (self.folder / "series.csv").write_text("step,strain\n")
+        self.assertEqual(softgrain.open(self.folder).series, {})
+
+    def test_snapshots_come_in_the_order_of_their_steps_with_all_their_fields(self):
+        run = softgrain.open(synthetic.write_run(self.folder, fields=("pressure", "coordination")))
+        self.assertEqual(len(run), 7)
+        steps = [run[i].step for i in range(len(run))]
+        self.assertEqual(steps, sorted(steps))
+        last = run[-1]
+        self.assertAlmostEqual(last.time, 1e-5 * last.step)
+        self.assertEqual(last.particles["position"].shape[1], 2)
+        self.assertEqual(last.particles["radius"].ndim, 1)  # one column is a scalar
+        self.assertIn("coordination", last.particles)
+        self.assertEqual(len(last.contacts["pair"]), len(last.contacts["force"]))
+        self.assertEqual(last.walls.shape, (2, 4))
+
+    def test_a_directory_that_is_no_run_and_a_file_that_is_no_snapshot_are_refused(self):
+        with self.assertRaisesRegex(softgrain.NotARun, "case.toml"):
+            softgrain.open(self.folder)
+        run = softgrain.open(synthetic.write_run(self.folder))
+        run.snapshots[0].write_bytes(b"not HDF5")
+        with self.assertRaises(OSError):
+            run[0]
+
+
+if __name__ == "__main__":
+    unittest.main()
