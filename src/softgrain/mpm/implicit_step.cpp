@@ -36,9 +36,6 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
     mean_radius_ += grains.radius(g) / grains.size();
     smallest_radius_ = std::min(smallest_radius_, grains.radius(g));
   }
-  double outline_length = 0;
-  for (int g = 0; g < grains.size(); ++g) outline_length += 2 * std::numbers::pi * grains.radius(g);
-  margin_ = 0.5 * outline_length / grains.outline_size();
   for (const GrainBatch& batch : grains.batches) {
     matrix_.emplace_back(batch.topology->pattern);
     const std::size_t width = 2 * batch.topology->grid.outline_nodes();
@@ -187,7 +184,7 @@ std::vector<double> ImplicitDynamics::friction_of_contacts() const {
 /// Contacts at the present positions, and their impulses by NLGS with warm start.
 void ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   grains.gather_outline(outline_.position);
-  std::vector<OutlineContact> found = detect_outline_contacts(grains, outline_, margin_);
+  std::vector<OutlineContact> found = neighbours_.detect(grains, outline_);
   impulse = carried_impulses(grains, contacts, impulse, found);
   contacts = std::move(found);
   ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt);
@@ -230,7 +227,7 @@ void ImplicitDynamics::finish(double dt) {
     wall_impulse_[contacts[c].wall] -= impulse[c][0] * n + impulse[c][1] * perpendicular(n);
   }
   grains.gather_outline(outline_.position);
-  std::vector<OutlineContact> found = detect_outline_contacts(grains, outline_, margin_);
+  std::vector<OutlineContact> found = neighbours_.detect(grains, outline_);
   impulse = carried_impulses(grains, contacts, impulse, found);
   contacts = std::move(found);
 }

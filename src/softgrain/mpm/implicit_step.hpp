@@ -5,6 +5,7 @@
 #include "softgrain/mpm/elastic_contacts.hpp"
 #include "softgrain/mpm/outline_contacts.hpp"
 #include "softgrain/mpm/soft_grains.hpp"
+#include "softgrain/mpm/soft_step_report.hpp"
 
 namespace softgrain {
 
@@ -18,18 +19,6 @@ struct ImplicitOptions {
   double friction = 0;                                         ///< mu between grains
   double wall_friction = 0;                                    ///< mu against walls
   Vec<2> gravity{};                                            ///< [m/s^2]
-};
-
-/// What one step of soft grains did, over all its sub-steps.
-struct SoftStepReport {
-  int iterations = 0;  ///< of Newton's method
-  int sweeps = 0;      ///< of NLGS
-  int factorisations = 0;
-  int rejected = 0;            ///< sub-steps that were taken back
-  int contacts = 0;            ///< that carry impulse at the end
-  double residual = 0;         ///< last correction over the mean radius
-  double penetration_max = 0;  ///< deepest vertex at the end, over the radius of the smallest grain
-  bool converged = false;
 };
 
 /// Soft grains between walls by backward Euler with position-level contact (docs/theory.md, implicit MPM):
@@ -69,7 +58,8 @@ class ImplicitDynamics {
   void take_back();
   std::vector<double> friction_of_contacts() const;
 
-  double mean_radius_ = 0, smallest_radius_ = 0, margin_ = 0;
+  double mean_radius_ = 0, smallest_radius_ = 0;
+  OutlineNeighbours neighbours_;
   std::vector<BatchedCholesky> matrix_;
   std::vector<OutlineCompliance> compliance_;
   std::vector<WideVectors> start_, velocity_start_, right_, force_;  // per batch

@@ -13,6 +13,11 @@ namespace {
 
 constexpr int smoothing_passes = 2;
 
+// In units of the mean segment: contacts are kept up to this gap, and candidates until a vertex moved half
+// the skin.
+constexpr double margin_share = 0.5;
+constexpr double skin_share = 0.5;
+
 /// Neighbour of a vertex along its own outline.
 int next_vertex(const SoftGrains& grains, int vertex) {
   const int grain = grains.grain_of_vertex(vertex);
@@ -79,6 +84,23 @@ OutlineContact wall_contact(const OutlineState& state, int slave, int wall_index
           .slip = dot(perpendicular(wall.normal), moved)};
 }
 
+/// The vertex of a master's outline nearest to `slave`, walking downhill from `start`.
+int nearest_vertex(const SoftGrains& grains, std::span<const Vec<2>> position, int slave, int start) {
+  const auto distance_squared = [&](int w) {
+    const Vec<2> d = position[w] - position[slave];
+    return dot(d, d);
+  };
+  int nearest = start;
+  double least = distance_squared(start);
+  for (;;) {
+    const int before = previous_vertex(grains, nearest), after = next_vertex(grains, nearest);
+    const double d_before = distance_squared(before), d_after = distance_squared(after);
+    if (least <= d_before && least <= d_after) return nearest;
+    nearest = d_before < d_after ? before : after;
+    least = std::min(d_before, d_after);
+  }
+}
+
 /// Identity of a contact over the steps: the vertex, then the wall or the master grain.
 std::tuple<int, int, int> identity(const SoftGrains& grains, const OutlineContact& contact) {
   return {contact.vertex, contact.wall, contact.wall >= 0 ? 0 : grains.grain_of_vertex(contact.master[0])};
@@ -103,22 +125,29 @@ std::vector<Vec<2>> smoothed_normals(const SoftGrains& grains, std::span<const V
   return normals;
 }
 
-std::vector<OutlineContact> detect_outline_contacts(const SoftGrains& grains, const OutlineState& state,
-                                                    double margin) {
-  const std::vector<Vec<2>> normals = smoothed_normals(grains, state.position);
+bool OutlineNeighbours::moved_far(const SoftGrains& grains, const OutlineState& state) const {
+  if (reference_.size() != state.position.size()) return true;
+  double largest = 0;
+  for (int v = 0; v < grains.outline_size(); ++v) {
+    const Vec<2> d = state.position[v] - reference_[v];
+    largest = std::max(largest, dot(d, d));
+  }
+  return largest > (skin_share * segment_ / 2) * (skin_share * segment_ / 2);
+}
+
+void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineState& state) {
+  reference_ = state.position;
+  candidates_.clear();
+  segment_ = 0;
+  for (int g = 0; g < grains.size(); ++g) segment_ += segment_length(grains, g) / grains.size();
   double longest = 0;
   for (int v = 0; v < grains.outline_size(); ++v)
     longest = std::max(longest, norm(state.position[next_vertex(grains, v)] - state.position[v]));
-  const double reach = longest + margin;
+  const double reach = longest + (margin_share + skin_share) * segment_;
   const CellGrid<2> grid(state.position, reach);
-  std::vector<OutlineContact> contacts;
   std::vector<Nearest> near;
   for (int v = 0; v < grains.outline_size(); ++v) {
     const int grain = grains.grain_of_vertex(v);
-    for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
-      const OutlineContact contact = wall_contact(state, v, w);
-      if (contact.gap < margin) contacts.push_back(contact);
-    }
     near.clear();
     grid.for_each_neighbour(v, [&](int w) {
       const int other = grains.grain_of_vertex(w);
@@ -134,8 +163,27 @@ std::vector<OutlineContact> detect_outline_contacts(const SoftGrains& grains, co
         *found = {other, w, distance_squared};
     });
     std::sort(near.begin(), near.end(), [](const Nearest& a, const Nearest& b) { return a.grain < b.grain; });
-    for (const Nearest& nearest : near) {
-      const OutlineContact contact = facing_segment(grains, state, normals, v, nearest.vertex);
+    for (const Nearest& nearest : near) candidates_.push_back({v, nearest.vertex});
+  }
+}
+
+std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, const OutlineState& state) {
+  if (moved_far(grains, state)) find_candidates(grains, state);
+  const double margin = margin_share * segment_;
+  const std::vector<Vec<2>> normals = smoothed_normals(grains, state.position);
+  std::vector<OutlineContact> contacts;
+  auto candidate = candidates_.begin();
+  for (int v = 0; v < grains.outline_size(); ++v) {
+    for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
+      const Wall<2>& wall = state.walls[w];
+      if (dot(state.position[v] - wall.point, wall.normal) < margin)
+        contacts.push_back(wall_contact(state, v, w));
+    }
+    for (; candidate != candidates_.end() && candidate->vertex == v; ++candidate) {
+      candidate->nearest = nearest_vertex(grains, state.position, v, candidate->nearest);
+      const Vec<2> d = state.position[v] - state.position[candidate->nearest];
+      if (dot(d, d) > 9 * segment_ * segment_) continue;
+      const OutlineContact contact = facing_segment(grains, state, normals, v, candidate->nearest);
       if (contact.gap < margin) contacts.push_back(contact);
     }
   }

@@ -30,9 +30,26 @@ struct OutlineState {
   double dt = 0;                        ///< [s]
 };
 
-/// All contacts with gap < margin [m], sorted by (vertex, master grain or wall). Cost O(vertices).
-std::vector<OutlineContact> detect_outline_contacts(const SoftGrains& grains, const OutlineState& state,
-                                                    double margin);
+/// Finds the contacts of outlines: which grains a vertex may meet is looked up among cells, and kept until
+/// some vertex has moved far; where on their outline it faces them is walked to from where it did last. Cost
+/// O(vertices).
+class OutlineNeighbours {
+ public:
+  /// All contacts with gap < half a segment, sorted by (vertex, master grain or wall).
+  std::vector<OutlineContact> detect(const SoftGrains& grains, const OutlineState& state);
+
+ private:
+  /// A slave vertex, and the vertex of a master grain that was nearest to it.
+  struct Candidate {
+    int vertex = 0, nearest = 0;
+  };
+  bool moved_far(const SoftGrains& grains, const OutlineState& state) const;
+  void find_candidates(const SoftGrains& grains, const OutlineState& state);
+
+  std::vector<Candidate> candidates_;  // sorted by (vertex, master grain)
+  std::vector<Vec<2>> reference_;      // positions when they were found
+  double segment_ = 0;                 // mean length of a segment of the round grains [m]
+};
 
 /// Impulses of `old` contacts [N s/m], given to the new contacts of the same vertex and master grain or wall.
 std::vector<Vec<2>> carried_impulses(const SoftGrains& grains, std::span<const OutlineContact> old,

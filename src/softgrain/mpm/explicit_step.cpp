@@ -1,0 +1,125 @@
+#include "softgrain/mpm/explicit_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <variant>
+
+#include "softgrain/contact/nlgs.hpp"
+#include "softgrain/core/error.hpp"
+#include "softgrain/mpm/equilibrium.hpp"
+#include "softgrain/mpm/lumped_contacts.hpp"
+
+namespace softgrain {
+
+ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
+                                   const ExplicitOptions& explicit_options)
+    : grains(std::move(soft_grains)), walls(std::move(plates)), options(explicit_options) {
+  require(grains.size() > 0, "there is no grain");
+  require(options.friction >= 0 && options.wall_friction >= 0, "friction must be >= 0, got {} and {}",
+          options.friction, options.wall_friction);
+  smallest_radius_ = grains.radius(0);
+  for (int g = 0; g < grains.size(); ++g) {
+    mean_radius_ += grains.radius(g) / grains.size();
+    smallest_radius_ = std::min(smallest_radius_, grains.radius(g));
+    const Topology& shape = grains.topology(g);
+    for (int i = shape.grid.outline_begin; i < shape.grid.nodes(); ++i)
+      inverse_mass_.push_back(1 /
+                              (grains.density * shape.node_volume[i] * grains.radius(g) * grains.radius(g)));
+  }
+  outline_velocity_.resize(grains.outline_size());
+}
+
+SoftStepReport ExplicitDynamics::step(double dt) {
+  grains.gather_outline(outline_.position);
+  outline_.start = outline_.position;
+  outline_.walls = walls;
+  outline_.dt = 0;
+  std::vector<OutlineContact> found = neighbours_.detect(grains, outline_);
+  impulse = carried_impulses(grains, contacts, impulse, found);
+  contacts = std::move(found);
+
+  kick(dt);  // v_free = v + dt M^-1 (f_ext - f_int)
+  read_outline();
+  LumpedContacts system(contacts, walls, outline_velocity_, inverse_mass_, dt, options.push_out);
+  std::vector<double> friction;
+  for (const OutlineContact& c : contacts)
+    friction.push_back(c.wall >= 0 ? options.wall_friction : options.friction);
+  for (int c = 0; c < system.size(); ++c)
+    if (impulse[c][0] > 0) system.apply_impulse(c, impulse[c]);
+  SolverOptions solver = options.solver;
+  solver.velocity_scale = mean_radius_ / dt;
+  const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction, solver);
+  write_outline();
+  for (GrainBatch& batch : grains.batches)
+    for (std::size_t i = 0; i < batch.position.size(); ++i) batch.position[i] += Wide(dt) * batch.velocity[i];
+  for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
+
+  SoftStepReport report{.iterations = 1, .sweeps = solved.sweeps, .converged = solved.converged};
+  wall_impulse_.assign(walls.size(), {});
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (!(impulse[c][0] > 0)) continue;
+    ++report.contacts;
+    report.penetration_max = std::max(report.penetration_max, -contacts[c].gap / smallest_radius_);
+    const Vec<2>& n = contacts[c].normal;
+    if (contacts[c].wall >= 0)
+      wall_impulse_[contacts[c].wall] -= impulse[c][0] * n + impulse[c][1] * perpendicular(n);
+  }
+  return report;
+}
+
+void ExplicitDynamics::kick(double dt) {
+  for (GrainBatch& batch : grains.batches) {
+    if (options.damping_time > 0)
+      for (std::size_t i = 0; i < batch.position.size(); ++i)
+        batch.position[i] += Wide(options.damping_time) * batch.velocity[i];
+    const unsigned inverted = internal_force(grains, batch, force_);
+    for (int lane = 0; lane < Wide::size; ++lane)
+      if ((inverted >> lane & 1u) != 0 && batch.grain[lane] >= 0)
+        throw NumericalError(fmt::format(
+            "a material point of grain {} is turned inside out; use a smaller time step", batch.grain[lane]));
+    const Wide scale = Wide(dt) / (grains.density * (batch.radius * batch.radius));
+    for (std::size_t i = 0; i < batch.position.size(); ++i) {
+      if (options.damping_time > 0) batch.position[i] -= Wide(options.damping_time) * batch.velocity[i];
+      const Wide rate = scale * Wide(1 / batch.topology->node_volume[i]);
+      for (int d = 0; d < 2; ++d) batch.velocity[i][d] += dt * options.gravity[d] - rate * force_[i][d];
+    }
+  }
+}
+
+/// Velocities of the outlines out of the lanes, and back.
+void ExplicitDynamics::read_outline() {
+  for (const GrainBatch& batch : grains.batches) {
+    const ReferenceGrid& grid = batch.topology->grid;
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+      for (int i = grid.outline_begin; i < grid.nodes(); ++i)
+        outline_velocity_[grains.outline_begin(batch.grain[lane]) + i - grid.outline_begin] = {
+            batch.velocity[i][0][lane], batch.velocity[i][1][lane]};
+  }
+}
+void ExplicitDynamics::write_outline() {
+  for (GrainBatch& batch : grains.batches) {
+    const ReferenceGrid& grid = batch.topology->grid;
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+      for (int i = grid.outline_begin; i < grid.nodes(); ++i)
+        for (int d = 0; d < 2; ++d)
+          batch.velocity[i][d].set(
+              lane, outline_velocity_[grains.outline_begin(batch.grain[lane]) + i - grid.outline_begin][d]);
+  }
+}
+
+double stable_time_step(const SoftGrains& grains, double safety) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int g = 0; g < grains.size(); ++g) {
+    const ReferenceGrid& grid = grains.topology(g).grid;
+    for (const auto& cell : grid.cell)
+      for (int a = 0; a < 4; ++a)
+        shortest =
+            std::min(shortest, grains.radius(g) * norm(grid.node[cell[a]] - grid.node[cell[(a + 1) % 4]]));
+  }
+  const double speed =
+      std::visit([&](const auto& law) { return law.wave_speed(grains.density); }, grains.law);
+  return safety * shortest / speed;
+}
+
+}  // namespace softgrain

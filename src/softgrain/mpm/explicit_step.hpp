@@ -1,0 +1,60 @@
+#pragma once
+#include <vector>
+
+#include "softgrain/contact/solver_options.hpp"
+#include "softgrain/mpm/outline_contacts.hpp"
+#include "softgrain/mpm/soft_grains.hpp"
+#include "softgrain/mpm/soft_step_report.hpp"
+
+namespace softgrain {
+
+struct ExplicitOptions {
+  double damping_time =
+      0;  ///< tau [s]: internal forces are taken at x + tau v, which damps the mesh's own vibrations
+  double push_out = 0.2;  ///< beta: share of a penetration that a step removes
+  SolverOptions solver{.max_sweeps = 200, .tolerance = 1e-6};  ///< NLGS; in units of mean radius / dt
+  double friction = 0;
+  double wall_friction = 0;
+  Vec<2> gravity{};  ///< [m/s^2]
+};
+
+/// Soft grains between walls by symplectic Euler with contact dynamics, on the same data as ImplicitDynamics:
+///   v_free = v + dt M^-1 (f_ext - f_int(x)),  v+ = v_free + M^-1 H p,  0 <= u_n + g/dt _|_ p_n >= 0,  x +=
+///   dt v+.
+class ExplicitDynamics {
+ public:
+  ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
+                   const ExplicitOptions& explicit_options);
+
+  /// One step of dt, which must be stable (stable_time_step). Raises NumericalError, naming the grain, if a
+  /// point is inverted.
+  SoftStepReport step(double dt);
+
+  const Vec<2>& wall_impulse(int wall) const { return wall_impulse_[wall]; }
+  double mean_radius() const { return mean_radius_; }
+
+  SoftGrains grains;
+  std::vector<Wall<2>> walls;
+  ExplicitOptions options;
+  std::vector<OutlineContact> contacts;
+  std::vector<Vec<2>> impulse;
+
+ private:
+  void kick(double dt);
+  void read_outline();
+  void write_outline();
+
+  double mean_radius_ = 0, smallest_radius_ = 0;
+  OutlineNeighbours neighbours_;
+  OutlineState outline_;
+  std::vector<Vec<2>> outline_velocity_;
+  std::vector<double> inverse_mass_;  // (outline vertices)
+  std::vector<Vec<2>> wall_impulse_;
+  WideVectors force_;
+};
+
+/// A stable step [s]: `safety` times the smallest distance of two nodes of a cell over the wave speed of
+/// unstrained material.
+double stable_time_step(const SoftGrains& grains, double safety = 0.5);
+
+}  // namespace softgrain

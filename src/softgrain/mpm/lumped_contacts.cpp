@@ -1,0 +1,41 @@
+#include "softgrain/mpm/lumped_contacts.hpp"
+
+namespace softgrain {
+
+LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, std::span<const Wall<2>> walls,
+                               std::span<Vec<2>> velocity, std::span<const double> inverse_mass, double dt,
+                               double push_out)
+    : contacts_(contacts), walls_(walls), velocity_(velocity), inverse_mass_(inverse_mass) {
+  for (const OutlineContact& c : contacts) {
+    double W = inverse_mass[c.vertex];
+    if (c.wall < 0) {
+      const auto weight = c.weights();
+      for (int m = 0; m < 2; ++m) W += weight[m] * weight[m] * inverse_mass[c.master[m]];
+    }
+    delassus_.push_back(W);
+    offset_.push_back(c.gap * (c.gap > 0 ? 1 : push_out) / dt);
+  }
+}
+
+Vec<2> LumpedContacts::relative_velocity(int contact) const {
+  const OutlineContact& c = contacts_[contact];
+  Vec<2> u = velocity_[c.vertex];
+  if (c.wall >= 0) {
+    u -= walls_[c.wall].velocity;
+  } else {
+    const auto weight = c.weights();
+    for (int m = 0; m < 2; ++m) u -= weight[m] * velocity_[c.master[m]];
+  }
+  return {dot(c.normal, u) + offset_[contact], dot(perpendicular(c.normal), u)};
+}
+
+void LumpedContacts::apply_impulse(int contact, const Vec<2>& dp) {
+  const OutlineContact& c = contacts_[contact];
+  const Vec<2> P = dp[0] * c.normal + dp[1] * perpendicular(c.normal);
+  velocity_[c.vertex] += inverse_mass_[c.vertex] * P;
+  if (c.wall >= 0) return;
+  const auto weight = c.weights();
+  for (int m = 0; m < 2; ++m) velocity_[c.master[m]] -= weight[m] * inverse_mass_[c.master[m]] * P;
+}
+
+}  // namespace softgrain
