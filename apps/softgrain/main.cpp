@@ -31,10 +31,10 @@ enum : int { success = 0, our_bug = 1, usage = 2, numerical = 3, input_output = 
 void add_verbs(CLI::App& app) {
   add_new_verb(app);
   add_check_verb(app);
-  if (add_run_verb) add_run_verb(app);
-  if (add_plot_verb) add_plot_verb(app);
-  if (add_info_verb) add_info_verb(app);
-  if (add_solve_verb) add_solve_verb(app);
+  add_run_verb(app);
+  add_plot_verb(app);
+  add_info_verb(app);
+  add_solve_verb(app);
   add_schema_verb(app);
   add_doctor_verb(app);
 }

@@ -28,9 +28,9 @@ void add_new_verb(CLI::App& app);
 void add_check_verb(CLI::App& app);
 void add_schema_verb(CLI::App& app);
 void add_doctor_verb(CLI::App& app);
-[[gnu::weak]] void add_run_verb(CLI::App& app);  // run and resume; weak until every verb is there
-[[gnu::weak]] void add_plot_verb(CLI::App& app);
-[[gnu::weak]] void add_info_verb(CLI::App& app);
-[[gnu::weak]] void add_solve_verb(CLI::App& app);
+void add_run_verb(CLI::App& app);  // run and resume
+void add_plot_verb(CLI::App& app);
+void add_info_verb(CLI::App& app);
+void add_solve_verb(CLI::App& app);
 
 }  // namespace softgrain

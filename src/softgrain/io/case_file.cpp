@@ -184,10 +184,11 @@ class CaseReader {
     return fmt::format("{}:{}:{}: error: {}\n", name_, at.line, at.column, issue.message) + source_line(at);
   }
 
-  /// The line of the file with a caret under the column; nothing where the line could harm a terminal.
+  /// The line of the file with a caret under the column; nothing where the line would flood or harm a
+  /// terminal.
   std::string source_line(TextPosition at) const {
     const std::string_view line = line_of(text_, at.line);
-    if (!is_printable(line)) return "";
+    if (line.size() > 200 || !is_printable(line)) return "";
     std::string blank;  // a tab stays a tab, so that the caret stands where the terminal puts the column
     int column = 1;
     for (std::size_t i = 0; i < line.size() && column < at.column; ++i) {

@@ -13,7 +13,7 @@ struct Dimension {
   friend bool operator==(const Dimension&, const Dimension&) = default;
 };
 
-/// One unit = factor * 10^exponent in SI. The power of ten is kept apart so that "0.3 mm" reads as exactly
+/// One unit = factor * 10^exponent in SI. The power of ten is kept apart so that "0.9 mm" reads as exactly
 /// the number 0.9e-3, correctly rounded.
 struct Unit {
   Dimension dimension;

@@ -86,11 +86,12 @@ TEST_CASE("the JSON Schema knows every key of a case, and no other") {
   CHECK(schema["additionalProperties"] == false);
   const auto resolved = nlohmann::json::parse(case_json(Case{}));
   CHECK(resolved.size() == schema["properties"].size());
-  for (const auto& [name, table] : resolved.items()) {
-    const auto& described = schema["properties"][name];
+  for (const auto& table : resolved.items()) {
+    const auto& described = schema["properties"][table.key()];
     CHECK(described["additionalProperties"] == false);
-    CHECK(described["properties"].size() == table.size());
-    for (const auto& [key, value] : table.items()) CHECK_MESSAGE(described["properties"].contains(key), key);
+    CHECK(described["properties"].size() == table.value().size());
+    for (const auto& key : table.value().items())
+      CHECK_MESSAGE(described["properties"].contains(key.key()), key.key());
   }
   const auto& relaxation = schema["properties"]["solver"]["properties"]["relaxation"];
   CHECK(relaxation["anyOf"][0]["exclusiveMaximum"] == 2);
