@@ -5,8 +5,9 @@
 
 namespace softgrain {
 
-/// Corotated law: Hooke's in the turned frame of F = R S, psi = mu |S - 1|^2 + lambda/2 (tr S - 3)^2 (3D;
-/// plane strain has S_33 = 1). Finite at J = 0, so a point may invert under enough pressure.
+/// Corotated law (theory (40)): Hooke's in the turned frame of F = R S,
+/// psi = mu |S - 1|^2 + lambda/2 (tr S - 3)^2 (3D; plane strain has S_33 = 1).
+/// Finite at J = 0, so a point may invert under enough pressure.
 struct Corotated {
   static constexpr bool needs_positive_J = true;
   double lambda = 0;  ///< [Pa]

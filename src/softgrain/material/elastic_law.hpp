@@ -7,8 +7,8 @@
 
 namespace softgrain {
 
-/// What a law answers about one deformation gradient F = dx/dX (Dim = 2: plane strain, F_33 = 1), or about
-/// eight of them when T is Wide:
+/// What a law (theory (36)) answers about one deformation gradient F = dx/dX, in two dimensions plane strain,
+/// or about eight of them when T is Wide:
 ///   energy    psi [J/m^3 of undeformed material], 0 at F = 1
 ///   stress    P = dpsi/dF [Pa], first Piola-Kirchhoff, tension positive
 ///   tangent   dP_iJ/dF_kL [Pa] at row i Dim + J, column k Dim + L; symmetric
@@ -30,9 +30,9 @@ concept ElasticLaw = RespondsTo<L, Dim, double> && RespondsTo<L, Dim, Wide> &&
 };
 
 /// An elastic law that comes apart as psi(F) = deviatoric().energy(F) + volume().energy(det F), so that a
-/// cell may take its volume change from the mean J of its points (mean dilatation, against locking from nu =
-/// 0.49 on; the tangent stays symmetric). The first part keeps some stiffness against volume change, of the
-/// order of mu; what grows without bound towards nu = 1/2 is all in the second.
+/// cell may take its volume change from the mean J of its points (mean dilatation, theory (43), against
+/// locking from nu = 0.49 on; the tangent stays symmetric). The first part keeps some stiffness against
+/// volume change, of the order of mu; what grows without bound towards nu = 1/2 is all in the second.
 template <class L, int Dim>
 concept SplitLaw = ElasticLaw<L, Dim> && requires(const L& law, double J) {
   { law.deviatoric() } -> ElasticLaw<Dim>;

@@ -7,8 +7,8 @@
 
 namespace softgrain {
 
-/// Hencky's law: Hooke's in the logarithmic strains e_a = ln s_a of the principal stretches,
-/// psi = mu sum_a e_a^2 + lambda/2 (ln J)^2. The basis of J2 plasticity at finite strain.
+/// Hencky's law (theory (40)-(41)): Hooke's in the logarithmic strains e_a = ln s_a of the principal
+/// stretches, psi = mu sum_a e_a^2 + lambda/2 (ln J)^2. The basis of J2 plasticity at finite strain.
 struct Hencky {
   static constexpr bool needs_positive_J = true;
   double lambda = 0;  ///< [Pa]

@@ -14,7 +14,7 @@ struct Lame {
   double wave_speed(double density) const { return std::sqrt((lambda + 2.0 * mu) / density); }
 };
 
-/// From Young's modulus E [Pa] and Poisson's ratio nu: lambda = E nu / ((1 + nu) (1 - 2 nu)),
+/// From Young's modulus E [Pa] and Poisson's ratio nu (theory (37)): lambda = E nu / ((1 + nu) (1 - 2 nu)),
 /// mu = E / (2 (1 + nu)). UsageError unless 0 < E < infinity and -1 < nu < 1/2.
 inline Lame lame(double E, double nu) {
   require(E > 0 && std::isfinite(E), "Young's modulus must be > 0 Pa, got {}", E);

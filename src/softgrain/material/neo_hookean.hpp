@@ -5,9 +5,9 @@
 
 namespace softgrain {
 
-/// Compressible neo-Hookean law: psi = mu/2 (I1 - 3) - mu ln J + U(J), I1 = tr F^T F (3D; plane strain has
-/// F_33 = 1). Stress and tangent are the innermost kernels, hence always_inline. The default: it stiffens
-/// under compression and never lets a point invert (with LogVolume).
+/// Compressible neo-Hookean law (theory (38)-(39)): psi = mu/2 (I1 - 3) - mu ln J + U(J), I1 = tr F^T F (3D;
+/// plane strain has F_33 = 1). The default: it stiffens under compression and never lets a point invert.
+/// Stress and tangent are the innermost kernels, hence always_inline.
 template <class Volume>
 struct NeoHookean {
   static constexpr bool needs_positive_J = true;

@@ -17,8 +17,8 @@ Mat<2, T> stress_of(const PlaneResponse<T>& psi, const Mat<2, T>& F) {
   return (2.0 * psi.d_I) * F + psi.d_J * cofactor(F);
 }
 
-/// dP/dF = 2 psi_I 1 + 4 psi_II F (x) F + 2 psi_IJ (F (x) cof + cof (x) F) + psi_JJ cof (x) cof + psi_J
-/// d(cof)/dF.
+/// dP/dF = 2 psi_I 1 + 4 psi_II F (x) F + 2 psi_IJ (F (x) cof F + cof F (x) F) + psi_JJ cof F (x) cof F
+///         + psi_J d(cof F)/dF.
 template <class T>
 Mat<4, T> tangent_of(const PlaneResponse<T>& psi, const Mat<2, T>& F) {
   const Mat<2, T> cof = cofactor(F);

@@ -41,9 +41,9 @@ Mat<3, T> stress_of(const PrincipalResponse<T>& psi, const Mat<3, T>&) {
   return psi.frame.u * Mat<3, T>::diagonal(psi.first) * transpose(psi.frame.v);
 }
 
-/// dP/dF = sum_ab psi_ab N_aa (x) N_bb + sum_{a<b} q_ab S_ab (x) S_ab + r_ab R_ab (x) R_ab, with N_ab = u_a
-/// (x) v_b, stretching S_ab = (N_ab + N_ba) / sqrt 2, rotating R_ab = (N_ab - N_ba) / sqrt 2, q_ab the
-/// quotient and r_ab = (psi_a + psi_b) / (s_a + s_b).
+/// dP/dF = sum_ab psi_ab N_aa (x) N_bb + sum_{a<b} q_ab S_ab (x) S_ab + r_ab R_ab (x) R_ab  (theory (42))
+/// with N_ab = u_a (x) v_b, stretching S_ab = (N_ab + N_ba) / sqrt 2, rotating R_ab = (N_ab - N_ba) / sqrt 2,
+/// q_ab the quotient and r_ab = (psi_a + psi_b) / (s_a + s_b).
 template <class T>
 Mat<9, T> tangent_of(const PrincipalResponse<T>& psi, const Mat<3, T>&) {
   const auto& [stretch, u, v] = psi.frame;

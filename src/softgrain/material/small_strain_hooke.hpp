@@ -4,8 +4,8 @@
 
 namespace softgrain {
 
-/// Hooke's law in the small strain e = sym(F - 1): psi = mu e : e + lambda/2 (tr e)^2. For small rotations
-/// only: a rotated, unstrained point has stress. Linear, so Newton's method needs one iteration.
+/// Hooke's law (theory (40)) in the small strain e = sym(F - 1): psi = mu e : e + lambda/2 (tr e)^2.
+/// For small rotations only: a rotated, unstrained point has stress. Its tangent is constant.
 struct SmallStrainHooke {
   static constexpr bool needs_positive_J = false;
   double lambda = 0;  ///< [Pa]

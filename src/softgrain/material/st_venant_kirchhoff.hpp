@@ -4,10 +4,10 @@
 
 namespace softgrain {
 
-/// St Venant-Kirchhoff law: Hooke's in Green's strain E = (F^T F - 1) / 2, psi = mu E : E + lambda/2 (tr
-/// E)^2. It gives the lower slope at large strain of the paper's Fig. 1, for a reason that no rubber has:
-/// under compression it softens, its stress falls below a stretch of 1/sqrt(3), and a point may turn inside
-/// out for a finite energy. Not for packings.
+/// St Venant-Kirchhoff law (theory (40)): Hooke's in Green's strain E = (F^T F - 1) / 2,
+/// psi = mu E : E + lambda/2 (tr E)^2. It gives the lower slope at large strain of the paper's Fig. 1, for a
+/// reason that no rubber has: its stress falls below a stretch of 1/sqrt(3), and a point may turn inside out
+/// for a finite energy. Not for packings.
 struct StVenantKirchhoff {
   static constexpr bool needs_positive_J = false;
   double lambda = 0;  ///< [Pa]

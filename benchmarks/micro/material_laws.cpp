@@ -1,0 +1,79 @@
+// CPU time of stress and tangent of one material point, law by law: one point after the other, and eight at
+// once.
+#include <fmt/core.h>
+
+#include <cmath>
+#include <variant>
+#include <vector>
+
+#include "harness.hpp"
+#include "softgrain/material/any_law.hpp"
+
+using namespace softgrain;
+using namespace softgrain::bench;
+
+namespace {
+
+constexpr int points = 256, repeats = 200;  // all stays in the second-level cache
+
+/// Deformations of about 10 %; lane by lane the same ones when T is Wide.
+template <int Dim, class T>
+std::vector<Mat<Dim, T>> deformations() {
+  constexpr int lanes = sizeof(T) / sizeof(double);
+  std::vector<Mat<Dim, T>> all(points / lanes, identity<Dim, T>());
+  for (int point = 0; point < points; ++point)
+    for (std::size_t k = 0; k < all[0].c.size(); ++k) {
+      T& entry = all[static_cast<std::size_t>(point / lanes)].c[k];
+      const double change = 0.1 * std::sin(7.0 * point + static_cast<double>(k));
+      if constexpr (lanes == 1)
+        entry += change;
+      else
+        entry.set(point % lanes, entry[point % lanes] + change);
+    }
+  return all;
+}
+
+template <int Dim, class T, class Law>
+struct Pieces {
+  Law law;
+  std::vector<Mat<Dim, T>> F = deformations<Dim, T>(), P = F;
+  std::vector<Mat<Dim * Dim, T>> A = std::vector<Mat<Dim * Dim, T>>(F.size());
+
+  void stresses() {
+    for (int again = 0; again < repeats; ++again)
+      for (std::size_t k = 0; k < F.size(); ++k) P[k] = law.stress(F[k]);
+  }
+  void tangents() {
+    for (int again = 0; again < repeats; ++again)
+      for (std::size_t k = 0; k < F.size(); ++k) A[k] = law.tangent(F[k]);
+  }
+};
+
+template <int Dim, class Law>
+void measure(std::string_view name, const Law& law, Results& results) {
+  Pieces<Dim, double, Law> one{law};
+  Pieces<Dim, Wide, Law> eight{law};
+  const auto seconds = fastest({[&] { one.stresses(); }, [&] { eight.stresses(); }, [&] { one.tangents(); },
+                                [&] { eight.tangents(); }});
+  const auto add = [&](const char* what, double scalar, double wide) {
+    const double ns = 1e9 / (1.0 * points * repeats);
+    results.add({fmt::format("{} {}D {}", name, Dim, what), ns * scalar, "ns/point", 0, ""});
+    results.add(
+        {fmt::format("{} {}D {} wide", name, Dim, what), ns * wide, "ns/point", wide / scalar, "one by one"});
+  };
+  add("stress", seconds[0], seconds[1]);
+  add("tangent", seconds[2], seconds[3]);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Results results("material_laws", argc, argv);
+  for (const LawChoice& choice : law_choices())
+    std::visit(
+        [&](const auto& law) {
+          measure<2>(choice.name, law, results);
+          measure<3>(choice.name, law, results);
+        },
+        choice.make(10e6, 0.45));
+}
