@@ -1,0 +1,75 @@
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/subprocess.hpp"
+
+using namespace softgrain::test;
+
+namespace {
+
+const std::string folder = SOFTGRAIN_TEST_DATA "/contact/";
+const std::string small = folder + "FrictionContactProblem00071.hdf5";
+
+ProcessResult solve(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {SOFTGRAIN_PROGRAM, "solve"});
+  return run(arguments);
+}
+
+}  // namespace
+
+TEST_CASE("solve converges on all problems by default and says so as JSON") {
+  for (const auto& [name, contacts, dimension] : {std::tuple{"FrictionContactProblem00071", 89, 2},
+                                                  {"FrictionContactProblem00237", 376, 2},
+                                                  {"fc2d_granularflowonwall_02020_00213", 2020, 2},
+                                                  {"local_problem_test", 48, 3},
+                                                  {"LMGC_100_PR_PerioBox-i00361-60-03000", 60, 3},
+                                                  {"Box_Stacks-i0122-82-5", 82, 3}}) {
+    CAPTURE(name);
+    const std::string file = folder + name + ".hdf5";
+    const ProcessResult result = solve({file, "--json"});
+    CHECK(result.exit_code == 0);
+    CHECK(result.err.empty());
+    const auto json = nlohmann::json::parse(result.out);
+    CHECK(json.at("file") == file);
+    CHECK(json.at("method") == "nesterov");
+    CHECK(json.at("contacts") == contacts);
+    CHECK(json.at("dimension") == dimension);
+    CHECK(json.at("sweeps") > 10);
+    CHECK(json.at("natural_map_residual") <= 1e-8);
+    CHECK(json.at("energy") < 0);
+    CHECK(json.at("cpu_seconds") > 0);
+    CHECK(json.at("converged") == true);
+    CHECK(json.at("tolerance") == 1e-8);
+  }
+}
+
+TEST_CASE("solve shows a table to people") {
+  const ProcessResult result = solve({small, "--method", "nlgs", "--tolerance", "1e-5"});
+  CHECK(result.exit_code == 0);
+  CHECK(result.out.find("89 contacts in 2D") != std::string::npos);
+  CHECK(result.out.find("nlgs, 40 sweeps") != std::string::npos);
+  CHECK(result.out.find("converged to 1e-05") != std::string::npos);
+}
+
+TEST_CASE("solve that does not converge ends with exit code 3 and prints what it has") {
+  const ProcessResult result = solve({small, "--max-sweeps", "7", "--json"});
+  CHECK(result.exit_code == 3);
+  const auto json = nlohmann::json::parse(result.out);
+  CHECK(json.at("converged") == false);
+  CHECK(json.at("sweeps") == 7);
+  CHECK(json.at("natural_map_residual") > 1e-8);
+}
+
+TEST_CASE("solve refuses wrong arguments and files with exit code 2") {
+  CHECK(solve({small, "--method", "newton"}).exit_code == 2);
+  CHECK(solve({small, "--tolerance", "-1"}).exit_code == 2);
+  CHECK(solve({small, "--tolerance", "nan"}).exit_code == 2);
+  CHECK(solve({small, "--max-sweeps", "-1"}).exit_code == 2);
+  CHECK(solve({}).exit_code == 2);
+  const ProcessResult text = solve({folder + "README.md"});
+  CHECK(text.exit_code == 2);
+  CHECK(text.out.empty());
+  CHECK(text.err.find("README.md: not an HDF5 file") != std::string::npos);
+  CHECK(text.err.find("HDF5-DIAG") == std::string::npos);
+}
