@@ -116,17 +116,20 @@ TEST_CASE("no snapshot that was cut short, lengthened or overwritten is accepted
   CHECK(refused(""));
 }
 
-TEST_CASE("damage behind a forged hash is found by HDF5's checksums or by the hash of the contents") {
-  const Snapshot original = small_snapshot();
-  const std::string bytes = encode_snapshot(original, "a");
+TEST_CASE(
+    "damaged values behind a forged hash are found by HDF5's checksums or by the hash of the contents") {
+  const std::string bytes = encode_snapshot(small_snapshot(), "a");
   const std::string contents = bytes.substr(0, bytes.size() - 32);
+  const std::vector<double> position = ramp(40);
+  const std::string values(reinterpret_cast<const char*>(position.data()), 8 * position.size());
+  const std::size_t begin = contents.find(values);
+  REQUIRE(begin != std::string::npos);
   std::mt19937 random(3);
   for (int trial = 0; trial < 1000; ++trial) {
     std::string damaged = contents;
-    damaged[random() % damaged.size()] ^= static_cast<char>(1 << random() % 8);
+    damaged[begin + random() % values.size()] ^= static_cast<char>(1 << random() % 8);
     damaged += hash_of_bytes(damaged);
-    CHECK((refused(damaged) ||
-           same(decode_snapshot(damaged, "a"), original)));  // the same: the bit lay in a gap
+    CHECK(refused(damaged));
   }
 }
 
@@ -191,12 +194,18 @@ TEST_CASE("a snapshot that does not fit on the disk leaves the one before it and
   CHECK(std::distance(begin(files), end(files)) == 1);
 }
 
-TEST_CASE("a snapshot of a later format is refused by its version") {
-  Hdf5Writer later("a");
-  later.write_attribute("format", std::string_view("softgrain-snapshot"));
-  later.write_attribute("version", std::int64_t{2});
-  later.write_attribute("complete", std::int64_t{1});
-  const std::string bytes = later.finish();
-  CHECK_THROWS_WITH_AS(decode_snapshot(bytes + hash_of_bytes(bytes), "a"),
+TEST_CASE("a snapshot of a later format, or with contents that are not those of its hash, is refused") {
+  const auto snapshot_of_version = [](std::int64_t version) {
+    Hdf5Writer file("a");
+    file.write_attribute("format", std::string_view("softgrain-snapshot"));
+    file.write_attribute("version", version);
+    file.write_attribute("complete", std::int64_t{1});
+    file.write_attribute("content_hash", std::string_view("0123"));
+    const std::string bytes = file.finish();
+    return bytes + hash_of_bytes(bytes);
+  };
+  CHECK_THROWS_WITH_AS(decode_snapshot(snapshot_of_version(2), "a"),
                        "a: snapshot of version 2; this program reads 1", IoError);
+  CHECK_THROWS_WITH_AS(decode_snapshot(snapshot_of_version(1), "a"), "a: damaged: its content hash is wrong",
+                       IoError);
 }
