@@ -110,7 +110,9 @@ void run_case(const RunArguments& arguments) {
   require(arguments.resume || !fs::equivalent(source.path, paths.case_file(), no_such_file),
           "{} lies in the run's directory and would be overwritten; choose another with -o", source.path);
   const bool going_on = arguments.resume && fs::exists(paths.run_file());
-  require(!going_on || read_file(paths.case_file()) == request.case_text,
+  const bool has_case =
+      going_on && fs::exists(paths.case_file());  // not when the disk was full from the beginning
+  require(!has_case || read_file(paths.case_file()) == request.case_text,
           "{} is not the case that {} was begun with; `softgrain resume {}` goes on with the stored one",
           source.path, paths.root.string(), paths.root.string());
   const bool keep = arguments.force || going_on;

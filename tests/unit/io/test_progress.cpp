@@ -20,6 +20,7 @@ TEST_CASE("durations, counts and values are short") {
   CHECK(duration_text(200) == "3 min 20 s");
   CHECK(grouped(30012) == "30 012");
   CHECK(grouped(-1234567) == "-1 234 567");
+  CHECK(grouped(-123456) == "-123 456");
   CHECK(grouped(999) == "999");
   CHECK(short_value({"t", "s", -2.5e-7}) == "-250 ns");
   CHECK(short_value({"s", "Pa", 0}) == "0 Pa");

@@ -53,14 +53,14 @@ TEST_CASE("clearing a run's directory removes a run's results and nothing of the
   fs::create_directories(directory.path() / "snap");
   fs::create_directories(directory.path() / "vtk");
   for (const char* name : {"case.toml", "series.csv", "snap/s000001.h5", "snap/mine.h5",
-                           "vtk/walls_000001.vtp", "paper.tex", "snap/s000002.h5.tmp"})
+                           "vtk/walls_000001.vtp", "paper.tex", "vtk/view.pvsm", "snap/s000002.h5.tmp"})
     directory.file(name, "");
   RunDirectory(directory.path(), IfNotEmpty::keep).clear();
   std::vector<std::string> left;
   for (const auto& entry : fs::recursive_directory_iterator(directory.path()))
     if (entry.is_regular_file()) left.push_back(entry.path().filename());
   std::sort(left.begin(), left.end());
-  CHECK(left == std::vector<std::string>{".lock", "mine.h5", "paper.tex"});
+  CHECK(left == std::vector<std::string>{".lock", "mine.h5", "paper.tex", "view.pvsm"});
 }
 
 TEST_CASE("snapshots are listed by their step, however many digits it has") {

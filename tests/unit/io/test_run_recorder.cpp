@@ -1,5 +1,4 @@
 #include <doctest/doctest.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,6 +12,7 @@
 #include "softgrain/io/hdf5_file.hpp"
 #include "softgrain/io/run_recorder.hpp"
 #include "support/fake_simulation.hpp"
+#include "support/file_size_limit.hpp"
 #include "support/temporary_directory.hpp"
 
 using namespace softgrain;
@@ -136,6 +136,16 @@ TEST_CASE("a run that was stopped anywhere and resumed is bit for bit the run th
   CHECK(run_json(parts.path())["resumes"] == 4);
   CHECK(run_ball(parts.path(), request(true)).exit_code == 0);  // resuming what is done changes nothing
   CHECK(physics(parts.path()) == physics(whole.path()));
+  CHECK(run_json(parts.path())["verdict"] == run_json(whole.path())["verdict"]);
+}
+
+TEST_CASE("the last state is written even when the progress stays a little below one") {
+  const test::TemporaryDirectory directory;
+  BouncingBall ball;
+  ball.progress_at_end = 1 - 1e-12;
+  run_ball(directory.path(), request(), std::move(ball));
+  CHECK(read_last_row(directory.path() / "series.csv")->front().value == 400);
+  CHECK_NOTHROW(read_snapshot(directory.path() / "snap" / "s000400.h5"));
 }
 
 TEST_CASE("SIGUSR1 writes a snapshot and the run goes on") {
@@ -210,25 +220,19 @@ TEST_CASE("a numerical failure names the last good snapshot and leaves the run f
 TEST_CASE("a full disk ends the run with the path and the bytes needed, and what was written stays good") {
   const test::TemporaryDirectory whole, parts;
   run_ball(whole.path(), request());
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const auto old_action = std::signal(SIGXFSZ, SIG_IGN);
   for (const rlim_t size : {100, 600, 1500, 2500}) {  // run.json is the first, then series.csv
-    const rlimit small{.rlim_cur = size, .rlim_max = before.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &small);
     std::string message;
     try {
+      const test::FileSizeLimit limit(size);
       run_ball(parts.path(), request(true));
     } catch (const IoError& error) {
       message = error.what();
     }
-    setrlimit(RLIMIT_FSIZE, &before);
     CHECK(message.starts_with(parts.path().string()));
     CHECK(message.find(" bytes: File too large") != std::string::npos);
     for (const auto& entry : fs::recursive_directory_iterator(parts.path()))
       CHECK(entry.path().extension() != ".tmp");
   }
-  std::signal(SIGXFSZ, old_action);
   run_ball(parts.path(), request(true));
   check_equal_runs(parts.path(), whole.path());
 }

@@ -2,6 +2,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/io/series_writer.hpp"
+#include "support/file_size_limit.hpp"
 #include "support/temporary_directory.hpp"
 
 using namespace softgrain;
@@ -37,6 +38,11 @@ TEST_CASE("a rewound series has lost its torn last line and the rows after the s
     rewind_series(path, 10);
     CHECK(test::read_text(path) == "step,z\n0,1\n10,2\n");
   }
+  SUBCASE("what follows a damaged line") {
+    directory.file("series.csv", "step,z\n0,1\n1?,2\n10,2\n");
+    rewind_series(path, 10);
+    CHECK(test::read_text(path) == "step,z\n0,1\n");
+  }
   SUBCASE("a torn header goes as a whole") {
     directory.file("series.csv", "step,stre");
     rewind_series(path, 10);
@@ -54,7 +60,12 @@ TEST_CASE("a series goes on under the same columns only") {
   CHECK_THROWS_AS(again.write_row({{"step", "", 2}}), UsageError);
 }
 
-TEST_CASE("a row that does not fit on the disk is an error that names the file and the bytes") {
+TEST_CASE("a row that does not fit on the disk is taken back, and the error names the file and the bytes") {
   CHECK_THROWS_WITH_AS(AppendFile("/dev/full").append("12345"),
                        "/dev/full: cannot write 5 bytes: No space left on device", IoError);
+  const test::TemporaryDirectory directory;
+  const std::string path = directory.file("series.csv", "step,z\n0,1\n");
+  const test::FileSizeLimit limit(15);
+  CHECK_THROWS_AS(AppendFile(path).append("10,2.5\n"), IoError);
+  CHECK(test::read_text(path) == "step,z\n0,1\n");
 }

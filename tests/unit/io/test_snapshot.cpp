@@ -1,9 +1,7 @@
 #include <doctest/doctest.h>
-#include <sys/resource.h>
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include <csignal>
 #include <numeric>
 #include <random>
 
@@ -11,6 +9,7 @@
 #include "softgrain/io/file.hpp"
 #include "softgrain/io/hdf5_file.hpp"
 #include "softgrain/io/snapshot.hpp"
+#include "support/file_size_limit.hpp"
 #include "support/temporary_directory.hpp"
 
 using namespace softgrain;
@@ -174,19 +173,13 @@ TEST_CASE("a snapshot that does not fit on the disk leaves the one before it and
   write_snapshot(path, original);
   Snapshot larger = original;
   larger.checkpoint.arrays["position"] = {2, ramp(4000)};
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const auto old_action = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit small{.rlim_cur = 16384, .rlim_max = before.rlim_max};
-  setrlimit(RLIMIT_FSIZE, &small);
   std::string message;
   try {
+    const test::FileSizeLimit limit(16384);
     write_snapshot(path, larger);
   } catch (const IoError& error) {
     message = error.what();
   }
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, old_action);
   const auto bytes = encode_snapshot(larger, path.string()).size();
   CHECK(message.find(fmt::format("{}: cannot write {} bytes", path.string(), bytes)) == 0);
   CHECK(same(read_snapshot(path), original));

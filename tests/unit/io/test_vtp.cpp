@@ -64,6 +64,7 @@ TEST_CASE("ParaView's particles are points in space with their fields as float32
   CHECK(file.find("header_type=\"UInt64\"") != std::string::npos);
   CHECK(vtp_array<float>(file, "position") == std::vector<float>{0, 0, 0, 2, 0.5F, 0, 4, 0, 0});
   CHECK(vtp_array<float>(file, "velocity") == std::vector<float>{1, 2, 0, 3, 4, 0, 5, 6, 0});
+  CHECK(file.find("Name=\"velocity\" NumberOfComponents=\"3\"") != std::string::npos);
   CHECK(vtp_array<float>(file, "radius") == std::vector<float>{1, 0, 3});
   CHECK(vtp_array<std::int64_t>(file, "cluster") == std::vector<std::int64_t>{7, 8, 1LL << 40});
   CHECK(vtp_array<std::int64_t>(file, "offsets") == std::vector<std::int64_t>{1, 2, 3});
