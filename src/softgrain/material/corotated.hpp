@@ -21,12 +21,12 @@ struct Corotated {
   /// First Piola-Kirchhoff stress P = dpsi/dF [Pa] = R (2 mu (S - 1) + lambda tr(S - 1) 1).
   template <int Dim, class T>
   Mat<Dim, T> stress(const Mat<Dim, T>& F) const {
-    return stress_of(response(F), F);
+    return stress_of(response(F));
   }
   /// dP_iJ/dF_kL [Pa] at (i Dim + J, k Dim + L).
   template <int Dim, class T>
   Mat<Dim * Dim, T> tangent(const Mat<Dim, T>& F) const {
-    return tangent_of(response(F), F);
+    return tangent_of(response(F));
   }
   /// Speed of pressure waves [m/s] in the unstrained material.
   double wave_speed(double density) const { return Lame{lambda, mu}.wave_speed(density); }
@@ -41,7 +41,8 @@ struct Corotated {
     const T slope = lambda * opening - 2.0 * mu;                                  // dpsi/dt
     const T curvature = 2.0 * (lambda + mu) * inverse_t * inverse_t * inverse_t;  // d(slope / t)/dt / t
     // |S - 1|^2 = ((s_1 - s_2)^2 + (t - 2)^2) / 2, (s_1 - s_2)^2 = I - 2 J: no cancellation at small strain.
-    return {.energy = 0.5 * mu * (c * c + d * d + opening * opening) + 0.5 * lambda * opening * opening,
+    return {.F = F,
+            .energy = 0.5 * mu * (c * c + d * d + opening * opening) + 0.5 * lambda * opening * opening,
             .d_I = mu + 0.5 * slope * inverse_t,
             .d_J = slope * inverse_t,
             .d_II = 0.25 * curvature,

@@ -41,17 +41,23 @@ concept SplitLaw = ElasticLaw<L, Dim> && requires(const L& law, double J) {
   { law.volume().second_derivative(J) } -> std::same_as<double>;  // U'' [Pa]
 };
 
-/// A law with memory, such as plasticity. `L::State<Dim>` is plain data, one per point, owned by the caller
-/// and changed once a step: every iteration of a step asks for energy (incremental potential), stress and
-/// tangent at F from the state at the *start* of the step, and when the step is accepted `state =
-/// law.advance(F, state)`. A rejected step so has nothing to undo.
+/// A law with memory (VonMises is one). `L::State<T>` is plain data, one per point, owned by the caller and
+/// changed once a step: every iteration of a step asks for energy (incremental potential), stress and tangent
+/// at F from the state at the *start* of the step, and when the step is accepted `state = law.advance(F,
+/// state)`. A rejected step so has nothing to undo.
+template <class L, int Dim, class T>
+concept RemembersIn = requires(const L& law, const Mat<Dim, T>& F,
+                               const typename L::template State<T>& state) {
+  { law.energy(F, state) } -> std::same_as<T>;
+  { law.stress(F, state) } -> std::same_as<Mat<Dim, T>>;
+  { law.tangent(F, state) } -> std::same_as<Mat<Dim * Dim, T>>;
+  { law.advance(F, state) } -> std::same_as<typename L::template State<T>>;
+};
 template <class L, int Dim>
-concept HistoryLaw = requires(const L& law, const Mat<Dim>& F, const typename L::template State<Dim>& state) {
-  { law.energy(F, state) } -> std::same_as<double>;
-  { law.stress(F, state) } -> std::same_as<Mat<Dim>>;
-  { law.tangent(F, state) } -> std::same_as<Mat<Dim * Dim>>;
-  { law.advance(F, state) } -> std::same_as<typename L::template State<Dim>>;
-  { law.wave_speed(1.0) } -> std::same_as<double>;
+concept HistoryLaw = RemembersIn<L, Dim, double> && RemembersIn<L, Dim, Wide> &&
+    requires(const L& law, double density) {
+  { law.wave_speed(density) } -> std::same_as<double>;
+  { L::needs_positive_J } -> std::convertible_to<bool>;
 };
 
 /// Whether the law may be asked about F, lane by lane; false where F has a NaN. Ask before the law, and

@@ -22,12 +22,12 @@ struct Hencky {
   /// First Piola-Kirchhoff stress P = dpsi/dF [Pa].
   template <int Dim, class T>
   Mat<Dim, T> stress(const Mat<Dim, T>& F) const {
-    return stress_of(response(F), F);
+    return stress_of(response(F));
   }
   /// dP_iJ/dF_kL [Pa] at (i Dim + J, k Dim + L).
   template <int Dim, class T>
   Mat<Dim * Dim, T> tangent(const Mat<Dim, T>& F) const {
-    return tangent_of(response(F), F);
+    return tangent_of(response(F));
   }
   /// Speed of pressure waves [m/s] in the unstrained material.
   double wave_speed(double density) const { return Lame{lambda, mu}.wave_speed(density); }
@@ -49,7 +49,8 @@ struct Hencky {
     const T f = 2.0 * z * phi.value * phi.value, df = phi.value * rest;
     const T ddf = 0.5 * (phi.derivative * rest - phi.value) * rest * rest;
     const double bulk = lambda + mu;
-    return {.energy = 0.5 * bulk * log_J * log_J + mu * f,
+    return {.F = F,
+            .energy = 0.5 * bulk * log_J * log_J + mu * f,
             .d_I = 0.5 * mu * df * inverse_J,
             .d_J = (bulk * log_J - mu * df * s) * inverse_J,
             .d_II = 0.25 * mu * ddf * J2,
@@ -57,7 +58,7 @@ struct Hencky {
             .d_JJ = (bulk * (1.0 - log_J) + mu * s * (ddf * s + 2.0 * df)) * J2};
   }
 
-  // 3D: psi_a = tau_a / s_a with Kirchhoff's stress tau_a = 2 mu e_a + lambda ln J.
+  // 3D: Kirchhoff's stress tau_a = 2 mu e_a + lambda ln J.
   template <class T>
   PrincipalResponse<T> response(const Mat<3, T>& F) const {
     PrincipalResponse<T> psi;
@@ -66,19 +67,9 @@ struct Hencky {
     const Vec<3, T> e{{log(s[0]), log(s[1]), log(s[2])}};
     const T log_J = e[0] + e[1] + e[2];
     psi.energy = mu * dot(e, e) + 0.5 * lambda * log_J * log_J;
-    for (int a = 0; a < 3; ++a) {
-      const T tau = 2.0 * mu * e[a] + lambda * log_J;
-      psi.first[a] = tau / s[a];
-      psi.second(a, a) = (lambda + 2.0 * mu - tau) / (s[a] * s[a]);
-      for (int b = a + 1; b < 3; ++b) {
-        const T product = 1.0 / (s[a] * s[b]), sum = s[a] + s[b], q = (s[a] - s[b]) / sum;
-        psi.second(a, b) = psi.second(b, a) = lambda * product;
-        // (e_a / s_a - e_b / s_b) / (s_a - s_b) = (s_b slope - e_b) / (s_a s_b), slope = (e_a - e_b) / (s_a -
-        // s_b).
-        const T slope = 2.0 * log_ratio(q * q).value / sum;
-        psi.quotient(a, b) = (2.0 * mu * (s[b] * slope - e[b]) - lambda * log_J) * product;
-      }
-    }
+    Mat<3, T> D = Mat<3, T>::diagonal({{T(2.0 * mu), T(2.0 * mu), T(2.0 * mu)}});
+    for (T& entry : D.c) entry += T(lambda);
+    differentiate(psi, e, T(mu), lambda * log_J, D);
     return psi;
   }
 };

@@ -8,19 +8,21 @@ namespace softgrain {
 /// are nothing special.
 template <class T>
 struct PlaneResponse {
+  Mat<2, T> F;
   T energy, d_I, d_J, d_II, d_IJ, d_JJ;
 };
 
 /// P = 2 psi_I F + psi_J cof F.
 template <class T>
-Mat<2, T> stress_of(const PlaneResponse<T>& psi, const Mat<2, T>& F) {
-  return (2.0 * psi.d_I) * F + psi.d_J * cofactor(F);
+Mat<2, T> stress_of(const PlaneResponse<T>& psi) {
+  return (2.0 * psi.d_I) * psi.F + psi.d_J * cofactor(psi.F);
 }
 
 /// dP/dF = 2 psi_I 1 + 4 psi_II F (x) F + 2 psi_IJ (F (x) cof F + cof F (x) F) + psi_JJ cof F (x) cof F
 ///         + psi_J d(cof F)/dF.
 template <class T>
-Mat<4, T> tangent_of(const PlaneResponse<T>& psi, const Mat<2, T>& F) {
+Mat<4, T> tangent_of(const PlaneResponse<T>& psi) {
+  const Mat<2, T>& F = psi.F;
   const Mat<2, T> cof = cofactor(F);
   Mat<4, T> A;
   for (int k = 0; k < 4; ++k) A(k, k) = 2.0 * psi.d_I;

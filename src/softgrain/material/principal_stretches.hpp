@@ -1,4 +1,5 @@
 #pragma once
+#include "softgrain/math/log_ratio.hpp"
 #include "softgrain/math/sym_eigen.hpp"
 #include "softgrain/math/tensor.hpp"
 
@@ -11,6 +12,7 @@ struct PrincipalFrame {
   Mat<3, T> u, v;
 };
 
+/// By the eigenvectors of F^T F.
 template <class T>
 PrincipalFrame<T> principal_frame(const Mat<3, T>& F) {
   // F^T F = sum_a stretch_a^2 v_a (x) v_a, u_a = F v_a / stretch_a.
@@ -35,9 +37,30 @@ struct PrincipalResponse {
   Mat<3, T> quotient;  ///< a < b
 };
 
+/// Fills the derivatives of a law in the logarithmic strains e_a = ln s_a from Kirchhoff's stress
+/// tau_a = 2 shear e_a + mean [Pa] and its derivative D_ab = dtau_a/de_b: psi_a = tau_a / s_a.
+template <class T>
+void differentiate(PrincipalResponse<T>& psi, const Vec<3, T>& e, const T& shear, const T& mean,
+                   const Mat<3, T>& D) {
+  const Vec<3, T>& s = psi.frame.stretch;
+  for (int a = 0; a < 3; ++a) {
+    const T tau = 2.0 * shear * e[a] + mean;
+    psi.first[a] = tau / s[a];
+    psi.second(a, a) = (D(a, a) - tau) / (s[a] * s[a]);
+    for (int b = a + 1; b < 3; ++b) {
+      const T product = 1.0 / (s[a] * s[b]), sum = s[a] + s[b], q = (s[a] - s[b]) / sum;
+      psi.second(a, b) = psi.second(b, a) = D(a, b) * product;
+      // (e_a / s_a - e_b / s_b) / (s_a - s_b) = (s_b slope - e_b) / (s_a s_b), slope = (e_a - e_b) / (s_a -
+      // s_b).
+      const T slope = 2.0 * log_ratio(q * q).value / sum;
+      psi.quotient(a, b) = (2.0 * shear * (s[b] * slope - e[b]) - mean) * product;
+    }
+  }
+}
+
 /// P = sum_a psi_a u_a (x) v_a.
 template <class T>
-Mat<3, T> stress_of(const PrincipalResponse<T>& psi, const Mat<3, T>&) {
+Mat<3, T> stress_of(const PrincipalResponse<T>& psi) {
   return psi.frame.u * Mat<3, T>::diagonal(psi.first) * transpose(psi.frame.v);
 }
 
@@ -45,7 +68,7 @@ Mat<3, T> stress_of(const PrincipalResponse<T>& psi, const Mat<3, T>&) {
 /// with N_ab = u_a (x) v_b, stretching S_ab = (N_ab + N_ba) / sqrt 2, rotating R_ab = (N_ab - N_ba) / sqrt 2,
 /// q_ab the quotient and r_ab = (psi_a + psi_b) / (s_a + s_b).
 template <class T>
-Mat<9, T> tangent_of(const PrincipalResponse<T>& psi, const Mat<3, T>&) {
+Mat<9, T> tangent_of(const PrincipalResponse<T>& psi) {
   const auto& [stretch, u, v] = psi.frame;
   const auto N = [&u = u, &v = v](int a, int b) {
     Mat<3, T> dyad;

@@ -87,6 +87,13 @@ inline Lanes sqrt(Lanes x) {
 inline Wide sqrt(const Wide& x) { return {sqrt(x.low), sqrt(x.high)}; }
 inline double sqrt(double x) { return std::sqrt(x); }
 
+/// Lane by lane, so at the speed of scalar code.
+inline Wide exp(Wide x) {
+  for (int lane = 0; lane < Wide::size; ++lane) x.set(lane, std::exp(x[lane]));
+  return x;
+}
+inline double exp(double x) { return std::exp(x); }
+
 /// Natural logarithm, relative error below 2.3e-16 wherever x is a normal, positive and finite number; NaN
 /// elsewhere, so also at 0 and infinity. After fdlibm's e_log.c (Sun Microsystems 1993), without branches.
 inline Lanes log(Lanes x) {

@@ -53,12 +53,13 @@ TEST_CASE("wide arithmetic has the bits of scalar arithmetic in each lane") {
   c += b;
   c -= 0.1;
   c *= a + 1.5;
-  const Wide root = sqrt(a);
+  const Wide root = sqrt(a), power = exp(a);
   for (int lane = 0; lane < Wide::size; ++lane) {
     const double x = lane + 1;
     CHECK(b[lane] == 3.0 / x);
     CHECK(c[lane] == (-x + 3.0 / x - 0.1) * (x + 1.5));
     CHECK(root[lane] == std::sqrt(x));
+    CHECK(power[lane] == std::exp(x));
     CHECK(max(a, Wide(4.5))[lane] == std::max(x, 4.5));
     CHECK(min(a, Wide(4.5))[lane] == std::min(x, 4.5));
     CHECK(select(a > b, a, b)[lane] == (x > 3.0 / x ? x : 3.0 / x));
@@ -94,7 +95,7 @@ TEST_CASE("eight doubles go to memory and back in order") {
 }
 
 TEST_CASE("the ratio of a difference of logarithms keeps its digits where both numbers meet") {
-  for (double r = 1e-9; r < 0.95; r *= 1.3) {
+  for (double r = 1e-9; r < 0.95; r *= 1.03) {
     const long double z = static_cast<long double>(r * r), root = std::sqrt(z);
     const long double value = std::atanh(root) / root;
     const LogRatio<double> phi = log_ratio(r * r);
