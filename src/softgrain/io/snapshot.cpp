@@ -23,7 +23,8 @@ constexpr std::int64_t format_version = 1;
 using Datasets = std::map<std::string, Array>;
 
 const std::string checkpoint_group = "/checkpoint/", particle_group = "/scene/particles/",
-                  contact_group = "/scene/contacts/", walls_path = "/scene/walls", run_group = "/run/";
+                  contact_group = "/scene/contacts/", outline_group = "/scene/outlines/",
+                  walls_path = "/scene/walls", run_group = "/run/";
 
 class Hash {
  public:
@@ -89,6 +90,7 @@ Datasets datasets_of(const Snapshot& snapshot) {
   add(checkpoint_group, snapshot.checkpoint.arrays);
   add(particle_group, snapshot.scene.particles);
   add(contact_group, snapshot.scene.contacts);
+  add(outline_group, snapshot.scene.outlines);
   datasets[walls_path] = {4, snapshot.scene.wall_segments};
   for_each_total(snapshot.report, snapshot.sums, [&](const char* name, const auto& value) {
     datasets[run_group + name] = {1, std::vector{value}};
@@ -111,6 +113,7 @@ Snapshot snapshot_of(const Datasets& datasets, const std::string& name) {
     snapshot.checkpoint.arrays = arrays_of(datasets, checkpoint_group);
     snapshot.scene.particles = arrays_of(datasets, particle_group);
     snapshot.scene.contacts = arrays_of(datasets, contact_group);
+    snapshot.scene.outlines = arrays_of(datasets, outline_group);
     snapshot.scene.wall_segments = std::get<std::vector<double>>(datasets.at(walls_path).values);
     for_each_total(snapshot.report, snapshot.sums, [&]<class T>(const char* total, T& value) {
       value = std::get<std::vector<T>>(datasets.at(run_group + total).values).at(0);
@@ -121,6 +124,14 @@ Snapshot snapshot_of(const Datasets& datasets, const std::string& name) {
     throw IoError(fmt::format("{}: a dataset has the wrong type", name));
   }
   return snapshot;
+}
+
+/// The HDF5 file in front of the hash. The library must not see damaged bytes: it may crash on them.
+std::string_view checked_contents(std::string_view bytes, const std::string& name) {
+  const auto contents = bytes.substr(0, bytes.size() - std::min(bytes.size(), hash_length));
+  if (bytes.substr(contents.size()) != file_hash(contents))
+    throw IoError(fmt::format("{}: not a snapshot, or a damaged one: the hash at its end is wrong", name));
+  return contents;
 }
 
 void check_format(const Hdf5Reader& file, const std::string& name) {
@@ -166,10 +177,7 @@ std::string encode_snapshot(const Snapshot& snapshot, const std::string& name) {
 }
 
 Snapshot decode_snapshot(std::string_view bytes, const std::string& name) {
-  const auto contents = bytes.substr(0, bytes.size() - std::min(bytes.size(), hash_length));
-  if (bytes.substr(contents.size()) != file_hash(contents))
-    throw IoError(fmt::format("{}: not a snapshot, or a damaged one: the hash at its end is wrong", name));
-  const Hdf5Reader file(contents, name);
+  const Hdf5Reader file(checked_contents(bytes, name), name);
   check_format(file, name);
   Datasets datasets;
   for (const std::string& path : file.datasets()) datasets[path] = file.read(path);
@@ -194,6 +202,9 @@ Snapshot read_snapshot(const std::filesystem::path& path) {
   return decode_snapshot(read_file(path), path.string());
 }
 
-double snapshot_time(const std::filesystem::path& path) { return Hdf5Reader(path).real_attribute("time"); }
+double snapshot_time(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  return Hdf5Reader(checked_contents(bytes, path.string()), path.string()).real_attribute("time");
+}
 
 }  // namespace softgrain

@@ -45,7 +45,7 @@ Snapshot decode_snapshot(std::string_view bytes, const std::string& name);
 void write_snapshot(const std::filesystem::path& path, const Snapshot& snapshot);
 Snapshot read_snapshot(const std::filesystem::path& path);
 
-/// Its time [s], without checking the rest.
+/// Its time [s], without unpacking the rest.
 double snapshot_time(const std::filesystem::path& path);
 
 }  // namespace softgrain
