@@ -211,7 +211,6 @@ class CaseReader {
 std::string read_case_text(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code ignored;
-  require(!fs::is_directory(path, ignored), "{} is a directory, not a case file", path);
   require(!fs::is_character_file(path, ignored), "{} is a device, not a case file", path);
   if (fs::is_regular_file(path, ignored))
     require(fs::file_size(path, ignored) <= 1'000'000, "{} is larger than 1 MB: not a case file", path);
