@@ -14,9 +14,9 @@ constexpr bool all_elastic(const std::variant<Laws...>*) {
 }
 static_assert(all_elastic(static_cast<const AnyLaw*>(nullptr)));
 
-template <auto factory>
+template <auto Factory>
 AnyLaw make(double E, double nu) {
-  return factory(E, nu);
+  return Factory(E, nu);
 }
 }  // namespace
 

@@ -16,8 +16,11 @@ using State = VonMises::State<double>;
 
 const VonMises law = von_mises(E, nu, 0.05, 0.3);
 
-/// A point that has flowed, in plane strain.
-State flowed() { return law.advance(Mat<2>{{1.25, 0.3, -0.1, 0.9}}, State{}); }
+/// A point that has flowed along two different axes, in plane strain: F_p^-1 is not symmetric.
+State flowed() {
+  const State once = law.advance(Mat<2>{{1.25, 0.3, -0.1, 0.9}}, State{});
+  return law.advance(Mat<2>{{0.9, -0.2, 0.4, 1.3}}, once);
+}
 
 /// Shear at constant volume: stretches exp(x), exp(-x), 1.
 Mat<2> pure_shear(double x) { return Mat<2>::diagonal({std::exp(x), std::exp(-x)}); }
