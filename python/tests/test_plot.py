@@ -137,12 +137,15 @@ class Pictures(Temporary):
         """No two words of the figure overlap, and all lie on the page."""
         figure.draw_without_rendering()
         boxes = [(text.get_text(), text.get_window_extent()) for text in drawn_texts(figure)]
-        for (a, box_a), (b, box_b) in combinations(boxes, 2):
-            overlap = np.minimum(box_a.max, box_b.max) - np.maximum(box_a.min, box_b.min)
-            self.assertFalse((overlap > 1).all(), f"{a!r} overlaps {b!r}")
+        self.assert_boxes_apart(boxes)
         for text, box in boxes:
             inside = (box.min >= -1).all() and (box.max <= np.array(figure.bbox.max) + 1).all()
             self.assertTrue(inside, f"{text!r} leaves the page")
+
+    def assert_boxes_apart(self, boxes):
+        for (a, box_a), (b, box_b) in combinations(boxes, 2):
+            overlap = np.minimum(box_a.max, box_b.max) - np.maximum(box_a.min, box_b.min)
+            self.assertFalse((overlap > 1).all(), f"{a!r} overlaps {b!r}")
 
     def test_no_word_covers_another(self):
         run, other = self.open(), self.open("a run with quite a long name")
@@ -155,6 +158,13 @@ class Pictures(Temporary):
                 plot.draw_diagnostics(run),
             ):
                 self.assert_texts_apart(figure)
+
+    def test_the_panels_keep_clear_of_one_another_and_of_their_headings(self):
+        with plot.style():
+            figure = plot.draw_grain(self.open())
+            figure.draw_without_rendering()
+        things = [*enumerate(figure.axes), *((text.get_text(), text) for text in figure.texts)]
+        self.assert_boxes_apart([(name, thing.get_window_extent()) for name, thing in things])
 
     def test_the_curve_says_its_plateau_and_the_characteristic_stress(self):
         with plot.style():
