@@ -150,6 +150,19 @@ TEST_CASE("an anticipated contact lets a gap close within the step but not cross
   }
 }
 
+TEST_CASE("a contact that has opened at mid-step forgets its impulse, so that flight takes one sweep") {
+  const Wall<2> floor{.point = {0, 0}, .normal = {0, 1}, .velocity = {}};
+  auto disk = rigid_particles<2>({{0, 1.001}}, {1}, {1}, {floor});
+  disk.velocity[0] = {0, -1};
+  const ContactLaw elastic{.restitution = 1, .push_out = 0, .activation = Activation::closed_at_mid_step};
+  RigidDynamics<2> dynamics(disk, frictionless, {.solver = {}, .law = elastic}, 0.5);
+  CHECK(dynamics.step(no_force<2>, 0.004).contacts == 1);
+  REQUIRE(dynamics.particles.velocity[0][1] == doctest::Approx(1).epsilon(1e-14));
+  const StepReport flight = dynamics.step(no_force<2>, 0.004);
+  CHECK(flight.sweeps == 1);
+  CHECK(flight.contacts == 0);
+}
+
 TEST_CASE("push-out removes its share of an overlap in a step") {
   auto disks = rigid_particles<2>({{0, 0}, {1.9, 0}}, {1, 1}, {1, 3}, {});
   RigidDynamics<2> dynamics(disks, frictionless, {.solver = {}, .law = {.push_out = 0.2}}, 0.5);
@@ -160,14 +173,28 @@ TEST_CASE("push-out removes its share of an overlap in a step") {
 }
 
 TEST_CASE("the report counts the contacts that push and measures their overlap by the mean radius") {
-  // disks 0 and 1 overlap by 0.1, 1 and 2 by 0.02, disk 3 is near but apart
-  auto disks = rigid_particles<2>({{0, 0}, {1.9, 0}, {4.88, 0}, {8.9, 0}}, {1, 1, 2, 2}, {1, 1, 1, 1}, {});
-  RigidDynamics<2> dynamics(disks, frictionless, {}, 0.5);
+  // disks 0 and 1 overlap by 0.1 and 1 and 2 by 0.02; 3 meets 2 within the step; 4 overlaps 3 but flies away
+  auto disks = rigid_particles<2>({{0, 0}, {1.9, 0}, {4.88, 0}, {8.9, 0}, {11.2, 0}}, {1, 1, 2, 2, 1.5},
+                                  {1, 1, 1, 1, 1}, {});
+  disks.velocity[3] = {-3, 0};
+  disks.velocity[4] = {200, 0};
+  RigidDynamics<2> dynamics(disks, frictionless, {}, 3);
   const StepReport report = dynamics.step(no_force<2>, 0.01);
-  CHECK(report.contacts == 2);
+  CHECK(report.contacts == 3);
   CHECK(report.overlap_max == doctest::Approx(0.1 / 1.5).epsilon(1e-12));
-  CHECK(report.overlap_mean == doctest::Approx(0.06 / 1.5).epsilon(1e-12));
+  CHECK(report.overlap_mean == doctest::Approx(0.12 / 3 / 1.5).epsilon(1e-12));
   CHECK(report.converged);
+}
+
+TEST_CASE("a residual is the penetration that a contact would gain in the step over the mean diameter") {
+  const double dt = 0.01, closing = 0.7;
+  auto disks = rigid_particles<2>({{0, 0}, {2.99, 0}}, {1, 2}, {1, 5}, {});
+  disks.velocity[1] = {-closing, 0};
+  RigidDynamics<2> dynamics(disks, frictionless, {.solver = {.max_sweeps = 1}, .law = {.push_out = 0}}, 0.5);
+  const StepReport report = dynamics.step(no_force<2>, dt);
+  CHECK(report.residual_max == doctest::Approx(closing * dt / 3).epsilon(1e-12));
+  CHECK(report.residual_mean == doctest::Approx(closing * dt / 3).epsilon(1e-12));
+  CHECK_FALSE(report.converged);
 }
 
 TEST_CASE("warm start solves a resting column in one sweep") {
