@@ -25,8 +25,18 @@ struct Case {
     double exponent = 7;        ///< gamma [-]
   } bpm;
 
+  struct Mpm {
+    std::string law = "neo_hookean";      ///< elastic law of the material
+    double young_modulus = 10e6;          ///< E [Pa]
+    double poisson_ratio = 0.45;          ///< nu [-]
+    int cells = 16;                       ///< along a side of the inner square: 14 cells^2 points in a grain
+    std::string integrator = "implicit";  ///< or "explicit"
+    double time_step = 0;  ///< dt [s]; 0: the plate moves 1 % of the smallest R (implicit), stable (explicit)
+    double tolerance = 1e-4;  ///< largest last correction of Newton's method, over the mean grain radius
+  } mpm;
+
   struct Contact {
-    double friction = 0;       ///< mu between primaries of one grain
+    double friction = 0;       ///< mu between primaries of one grain (bpm), between grains (mpm)
     double wall_friction = 0;  ///< mu against walls
     double restitution = 0;    ///< e_n, Newton's
     std::string activation =
@@ -49,11 +59,15 @@ struct Case {
   } loading;
 
   struct Time {
-    double step = 0.25e-6;  ///< dt [s]
+    double step = 0.25e-6;  ///< dt of the primaries [s]
   } time;
 
   struct Sample {
     std::int64_t seed = 1;
+    int grains = 20;                ///< in a box
+    double packing_fraction = 0.7;  ///< of the undeformed grains in the box at the start
+    double smallest_diameter = 1.4e-3,
+           largest_diameter = 2.4e-3;  ///< of grains in a box [m], uniform between
   } sample;
 
   struct Output {

@@ -2,13 +2,17 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/bpm_compression.hpp"
+#include "softgrain/experiment/mpm_simulation.hpp"
 
 namespace softgrain {
 
 std::unique_ptr<Simulation> create_simulation(const Case& the_case) {
   const auto& [loading, model] = the_case.experiment;
-  require(loading == "diametral", "experiment.loading '{}' is not known; use 'diametral'", loading);
-  require(model == "bpm", "experiment.model '{}' is not known; use 'bpm'", model);
+  require(loading == "diametral" || loading == "compaction",
+          "experiment.loading must be 'diametral' or 'compaction', got '{}'", loading);
+  if (model == "mpm") return create_mpm_simulation(the_case);
+  require(model == "bpm", "experiment.model must be 'bpm' or 'mpm', got '{}'", model);
+  require(loading == "diametral", "experiment.loading '{}' needs experiment.model 'mpm' for now", loading);
   return std::make_unique<BpmCompression>(the_case);
 }
 

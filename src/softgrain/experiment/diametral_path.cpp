@@ -11,7 +11,8 @@ double plate_travel(double strain, double grain_radius) { return 2 * grain_radiu
 
 double grain_strain(double travel, double grain_radius) { return -std::log1p(-travel / (2 * grain_radius)); }
 
-DiametralPath::DiametralPath(const Case::Loading& loading, double grain_radius, double dt) {
+DiametralPath::DiametralPath(const Case::Loading& loading, double grain_radius, double dt)
+    : radius_(grain_radius) {
   require(loading.wall_velocity > 0, "loading.wall_velocity must be > 0, got {} m/s", loading.wall_velocity);
   require(loading.max_strain > 0, "loading.max_strain must be > 0, got {}", loading.max_strain);
   double strain = 0;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "softgrain/experiment/case.hpp"
+#include "softgrain/experiment/plate_path.hpp"
 
 namespace softgrain {
 
@@ -14,21 +15,23 @@ double grain_strain(double plate_travel, double grain_radius);
 /// Diametral compression: the top plate goes down at constant speed, turns back at given strains by a given
 /// strain, comes down again, and stops at the last strain. Every leg is a whole number of steps, so the path
 /// is exact after a restart.
-class DiametralPath {
+class DiametralPath final : public PlatePath {
  public:
   DiametralPath(const Case::Loading& loading, double grain_radius, double dt);
 
-  std::int64_t steps() const { return legs_.back().end; }
-  /// Velocity of the top plate during step k [m/s]: negative while loading.
-  double plate_velocity(std::int64_t step) const;
-  /// Number of the leg of step k: 0 loading, 1 unloading, 2 reloading, ...
-  int leg(std::int64_t step) const;
+  std::int64_t steps() const override { return legs_.back().end; }
+  double plate_velocity(std::int64_t step) const override;
+  int leg(std::int64_t step) const override;
+  double strain(double height_start, double height) const override {
+    return grain_strain(height_start - height, radius_);
+  }
 
  private:
   struct Leg {
     std::int64_t end;  // first step after it
     double velocity;   // [m/s]
   };
+  double radius_;
   std::vector<Leg> legs_;
 };
 

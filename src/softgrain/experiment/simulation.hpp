@@ -29,11 +29,14 @@ struct Checkpoint {
   std::map<std::string, Array> arrays;
 };
 
-/// What can be drawn: disks, walls as segments, and contacts as segments with their force.
+/// What can be drawn: disks (primaries, or material points), outlines of soft grains, walls as segments, and
+/// contacts as segments with their force.
 struct Scene {
   std::map<std::string, Array> particles;  ///< position (n, 2), radius, then any field by primary particle
   std::map<std::string, Array> contacts;   ///< pair (m, 2) of particle indices, force (m, 1) [N/m]
-  std::vector<double> wall_segments;       ///< x0 y0 x1 y1 for each wall [m]
+  std::map<std::string, Array>
+      outlines;  ///< position (v, 2) of the outlines' vertices, grain (v): a new grain, a new polygon
+  std::vector<double> wall_segments;  ///< x0 y0 x1 y1 for each wall [m]
 };
 
 /// The one abstract class: an experiment with a model of a grain, advanced step by step.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softgrain/material/any_law.hpp"
+
 namespace softgrain {
 namespace {
 
@@ -17,16 +19,24 @@ Allowed between(double low, double high) {
 }
 Allowed one_of(std::vector<std::string> words) { return {.words = std::move(words)}; }
 
+std::vector<std::string> law_names() {
+  std::vector<std::string> names;
+  for (const LawChoice& choice : law_choices()) names.emplace_back(choice.name);
+  return names;
+}
+
 // clang-format off
 // A key's name and its place in Case from the same words.
 #define KEY(member, ...) Key{#member, +[](Case& c) -> auto& { return c.member; }, __VA_ARGS__}
 
 std::vector<Key> all_keys() {
   return {
-      KEY(experiment.loading, "", one_of({"diametral"}),
-          "the loading path; diametral: one grain between two plates, the top one moves"),
-      KEY(experiment.model, "", one_of({"bpm"}),
-          "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other"),
+      KEY(experiment.loading, "", one_of({"diametral", "compaction"}),
+          "the loading path; diametral: one grain between two plates, the top one moves; compaction: grains in a box "
+          "whose lid comes down (mpm)"),
+      KEY(experiment.model, "", one_of({"bpm", "mpm"}),
+          "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other; mpm: an "
+          "elastic body by the material point method"),
 
       KEY(grain.radius, "mm", positive(), "radius R of the grain"),
       KEY(grain.density, "kg/m^3", positive(), "density rho; the grain weighs rho pi R^2 per metre of depth"),
@@ -38,7 +48,17 @@ std::vector<Key> all_keys() {
       KEY(bpm.exponent, "", at_least(1),
           "exponent gamma of F0 (a0/r)^gamma, r the distance of the centres, a0 the sum of the radii"),
 
-      KEY(contact.friction, "", at_least(0), "coefficient of friction mu between the primaries of a grain"),
+      KEY(mpm.law, "", one_of(law_names()), "elastic law"),
+      KEY(mpm.young_modulus, "MPa", positive(), "Young's modulus E"),
+      KEY(mpm.poisson_ratio, "", between(-1, 0.5), "Poisson's ratio nu; from 0.49 on cells change volume in the mean"),
+      KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points"),
+      KEY(mpm.integrator, "", one_of({"implicit", "explicit"}), "backward Euler, or symplectic Euler with lumped masses"),
+      KEY(mpm.time_step, "us", at_least(0),
+          "time step; 0: the plate moves 1 % of the smallest radius (implicit), or the stable step (explicit)"),
+      KEY(mpm.tolerance, "", positive(), "largest last correction of Newton's method over the mean grain radius"),
+
+      KEY(contact.friction, "", at_least(0),
+          "coefficient of friction mu, between the primaries of a grain (bpm) or between grains (mpm)"),
       KEY(contact.wall_friction, "", at_least(0), "coefficient of friction mu against walls"),
       KEY(contact.restitution, "", from_to(0, 1), "Newton's coefficient of restitution e_n"),
       KEY(contact.activation, "", one_of({"anticipated", "closed_at_mid_step"}),
@@ -53,7 +73,7 @@ std::vector<Key> all_keys() {
 
       KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top plate"),
       KEY(loading.max_strain, "", between(0, 3),
-          "grain strain eps = -ln(1 - d/R) at the end, d half the travel of the plate"),
+          "strain at the end: eps = -ln(1 - d/R), d half the travel of the plate; compaction: eps = ln(h_start/h)"),
       KEY(loading.unload_at, "", positive(),
           "ascending strains at which the plate turns back once; [] for none"),
       KEY(loading.unload_by, "", positive(), "strain given back before loading again"),
@@ -62,6 +82,10 @@ std::vector<Key> all_keys() {
 
       KEY(sample.seed, "", at_least(0),
           "seed of the random numbers; another seed is another sample of the same grain"),
+      KEY(sample.grains, "", from_to(1, 1e6), "grains in the box (compaction)"),
+      KEY(sample.packing_fraction, "", between(0, 0.8), "undeformed grain area over box area at the start (compaction)"),
+      KEY(sample.smallest_diameter, "mm", positive(), "of the grains in the box, uniform between (compaction)"),
+      KEY(sample.largest_diameter, "mm", positive(), "of the grains in the box (compaction)"),
 
       KEY(output.samples, "", from_to(1, 1e6), "rows of series.csv, evenly over the run"),
       KEY(output.snapshots, "", from_to(0, 1e5), "restart points, evenly over the run"),
@@ -74,6 +98,7 @@ std::vector<TableOfKeys> all_tables() {
       {"experiment", "What is done, and with which model of a grain."},
       {"grain", "The soft grain."},
       {"bpm", "Bonded particle model: the primary particles of a grain."},
+      {"mpm", "Material point method: the elastic material and its grid."},
       {"contact", "Laws of contact."},
       {"solver", "The contact solver: nonlinear Gauss-Seidel."},
       {"loading", "What the plates do."},

@@ -1,0 +1,60 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "softgrain/experiment/case.hpp"
+#include "softgrain/experiment/plate_path.hpp"
+#include "softgrain/experiment/simulation.hpp"
+#include "softgrain/mpm/explicit_step.hpp"
+#include "softgrain/mpm/implicit_step.hpp"
+
+namespace softgrain {
+
+/// Soft grains by MPM under a plate: one grain between two plates (the paper's Fig. 1), or a packing in a box
+/// whose lid comes down (Figs. 2-4). `Dynamics` is ImplicitDynamics or ExplicitDynamics: both hold the same
+/// data.
+template <class Dynamics>
+class MpmSimulation final : public Simulation {
+ public:
+  /// walls: the bottom, the top one that the path moves, then any others.
+  MpmSimulation(Dynamics dynamics, std::unique_ptr<PlatePath> path, double dt);
+
+  bool finished() const override { return step_ >= path_->steps(); }
+  double progress() const override {
+    return static_cast<double>(step_) / static_cast<double>(path_->steps());
+  }
+  double time() const override { return static_cast<double>(step_) * dt_; }
+  std::int64_t steps_done() const override { return step_; }
+  std::int64_t steps_planned() const override { return path_->steps(); }
+  StepReport step() override;
+  std::vector<Quantity> observe() override;
+  Scene scene() const override;
+  Checkpoint checkpoint() const override;
+  void restore(const Checkpoint& checkpoint) override;
+
+  const Dynamics& dynamics() const { return dynamics_; }
+
+ private:
+  /// What is summed between two rows, or over the run; saved with a checkpoint.
+  struct Sums {
+    double force_bottom = 0, force_top = 0;  ///< impulses since the last row [N s/m]
+    double duration = 0;                     ///< since the last row [s]
+    double wall_work = 0;                    ///< over the run [J/m]
+    double iterations = 0, rejected = 0;     ///< since the last row; over the run
+  };
+  double plate_distance() const;
+  double stored_energy() const;
+
+  Dynamics dynamics_;
+  std::unique_ptr<PlatePath> path_;
+  double dt_ = 0;
+  double height_start_ = 0;
+  std::int64_t step_ = 0;
+  Sums sums_;
+};
+
+/// The experiment of a case whose model is "mpm".
+std::unique_ptr<Simulation> create_mpm_simulation(const Case& the_case);
+
+}  // namespace softgrain

@@ -1,0 +1,19 @@
+#pragma once
+#include <cstdint>
+
+namespace softgrain {
+
+/// How the top plate moves, step by step, and what its travel means as a strain.
+class PlatePath {
+ public:
+  virtual ~PlatePath() = default;
+  virtual std::int64_t steps() const = 0;
+  /// Velocity of the top plate during step k [m/s]: negative while loading.
+  virtual double plate_velocity(std::int64_t step) const = 0;
+  /// Number of the leg of step k: 0 loading, 1 unloading, 2 reloading, ...
+  virtual int leg(std::int64_t step) const = 0;
+  /// Strain for the distance of the plates at the start and now [m].
+  virtual double strain(double height_start, double height) const = 0;
+};
+
+}  // namespace softgrain

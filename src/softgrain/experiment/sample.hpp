@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "softgrain/math/vec.hpp"
+
+namespace softgrain {
+
+/// Grains as a sample places them, for any model.
+struct PlacedGrain {
+  Vec<2> centre;      ///< [m]
+  double radius = 0;  ///< [m]
+  double angle = 0;   ///< [rad] random orientation
+};
+
+/// A square box with corner (0, 0).
+struct BoxSample {
+  double side = 0;  ///< [m]
+  std::vector<PlacedGrain> grains;
+};
+
+struct BoxSampleOptions {
+  int grains = 300;
+  double smallest = 1.4e-3, largest = 2.4e-3;  ///< diameters, uniform between [m]
+  double packing_fraction = 0.7;               ///< sum pi R^2 / side^2
+  double clearance = 0.02;                     ///< free distance round each grain, over its radius
+  std::uint64_t seed = 1;
+};
+
+/// Random places without overlap: uniform at first, then pairs that overlap are pushed apart until none does.
+/// The same seed gives the same bits. Raises UsageError if the packing fraction is so high that none is
+/// found.
+BoxSample sample_box(const BoxSampleOptions& options);
+
+}  // namespace softgrain
