@@ -31,17 +31,22 @@ ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
 }
 
 SoftStepReport ExplicitDynamics::step(double dt) {
-  grains.gather_outline(outline_.position);
-  outline_.start = outline_.position;
+  // contacts where x + dt v will be
+  grains.gather_outline(outline_.start);
+  read_outline();
+  outline_.position = outline_.start;
+  for (std::size_t v = 0; v < outline_velocity_.size(); ++v)
+    outline_.position[v] += dt * outline_velocity_[v];
+  for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
   outline_.walls = walls;
-  outline_.dt = 0;
+  outline_.dt = dt;
   std::vector<OutlineContact> found = neighbours_.detect(grains, outline_);
   impulse = carried_impulses(grains, contacts, impulse, found);
   contacts = std::move(found);
 
+  LumpedContacts system(contacts, walls, outline_velocity_, inverse_mass_, dt);
   kick(dt);  // v_free = v + dt M^-1 (f_ext - f_int)
   read_outline();
-  LumpedContacts system(contacts, walls, outline_velocity_, inverse_mass_, dt, options.push_out);
   std::vector<double> friction;
   for (const OutlineContact& c : contacts)
     friction.push_back(c.wall >= 0 ? options.wall_friction : options.friction);
@@ -53,14 +58,15 @@ SoftStepReport ExplicitDynamics::step(double dt) {
   write_outline();
   for (GrainBatch& batch : grains.batches)
     for (std::size_t i = 0; i < batch.position.size(); ++i) batch.position[i] += Wide(dt) * batch.velocity[i];
-  for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
+  grains.gather_outline(outline_.position);
 
   SoftStepReport report{.iterations = 1, .sweeps = solved.sweeps, .converged = solved.converged};
   wall_impulse_.assign(walls.size(), {});
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     if (!(impulse[c][0] > 0)) continue;
     ++report.contacts;
-    report.penetration_max = std::max(report.penetration_max, -contacts[c].gap / smallest_radius_);
+    report.penetration_max =
+        std::max(report.penetration_max, -gap_now(contacts[c], outline_) / smallest_radius_);
     const Vec<2>& n = contacts[c].normal;
     if (contacts[c].wall >= 0)
       wall_impulse_[contacts[c].wall] -= impulse[c][0] * n + impulse[c][1] * perpendicular(n);

@@ -11,7 +11,6 @@ namespace softgrain {
 struct ExplicitOptions {
   double damping_time =
       0;  ///< tau [s]: internal forces are taken at x + tau v, which damps the mesh's own vibrations
-  double push_out = 0.2;  ///< beta: share of a penetration that a step removes
   SolverOptions solver{.max_sweeps = 200, .tolerance = 1e-6};  ///< NLGS; in units of mean radius / dt
   double friction = 0;
   double wall_friction = 0;
@@ -19,8 +18,9 @@ struct ExplicitOptions {
 };
 
 /// Soft grains between walls by symplectic Euler with contact dynamics, on the same data as ImplicitDynamics:
-///   v_free = v + dt M^-1 (f_ext - f_int(x)),  v+ = v_free + M^-1 H p,  0 <= u_n + g/dt _|_ p_n >= 0,  x +=
-///   dt v+.
+///   v_free = v + dt M^-1 (f_ext - f_int(x)),  v+ = v_free + M^-1 H p,  x+ = x + dt v+,
+///   0 <= g(x+) _|_ p_n >= 0,  |p_t| <= mu p_n,
+/// with g(x+) linear about x + dt v: at x itself, sliding along an edge would drive vertices into it.
 class ExplicitDynamics {
  public:
   ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,

@@ -3,8 +3,7 @@
 namespace softgrain {
 
 LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, std::span<const Wall<2>> walls,
-                               std::span<Vec<2>> velocity, std::span<const double> inverse_mass, double dt,
-                               double push_out)
+                               std::span<Vec<2>> velocity, std::span<const double> inverse_mass, double dt)
     : contacts_(contacts), walls_(walls), velocity_(velocity), inverse_mass_(inverse_mass) {
   for (const OutlineContact& c : contacts) {
     double W = inverse_mass[c.vertex];
@@ -13,12 +12,11 @@ LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, std::sp
       for (int m = 0; m < 2; ++m) W += weight[m] * weight[m] * inverse_mass[c.master[m]];
     }
     delassus_.push_back(W);
-    offset_.push_back(c.gap * (c.gap > 0 ? 1 : push_out) / dt);
+    offset_.push_back(c.gap / dt - dot(c.normal, velocity_between(c)));
   }
 }
 
-Vec<2> LumpedContacts::relative_velocity(int contact) const {
-  const OutlineContact& c = contacts_[contact];
+Vec<2> LumpedContacts::velocity_between(const OutlineContact& c) const {
   Vec<2> u = velocity_[c.vertex];
   if (c.wall >= 0) {
     u -= walls_[c.wall].velocity;
@@ -26,7 +24,13 @@ Vec<2> LumpedContacts::relative_velocity(int contact) const {
     const auto weight = c.weights();
     for (int m = 0; m < 2; ++m) u -= weight[m] * velocity_[c.master[m]];
   }
-  return {dot(c.normal, u) + offset_[contact], dot(perpendicular(c.normal), u)};
+  return u;
+}
+
+Vec<2> LumpedContacts::relative_velocity(int contact) const {
+  const Vec<2>& n = contacts_[contact].normal;
+  const Vec<2> u = velocity_between(contacts_[contact]);
+  return {dot(n, u) + offset_[contact], dot(perpendicular(n), u)};
 }
 
 void LumpedContacts::apply_impulse(int contact, const Vec<2>& dp) {

@@ -8,14 +8,15 @@
 namespace softgrain {
 
 /// Contacts of explicit grains as a ContactSystem: the outline's lumped masses answer at once,
-///   u = v_slave - (1 - xi) v_0 - xi v_1 (+ g/dt along n),   W = (1/m_slave + (1 - xi)^2/m_0 + xi^2/m_1) 1.
+///   u = v_slave - (1 - xi) v_0 - xi v_1,   W = (1/m_slave + (1 - xi)^2/m_0 + xi^2/m_1) 1,
+/// with u_n changed to the gap at the end of the step over dt, (g + dt n . (u - u_found))/dt, where u_found
+/// had brought the outlines to where the contacts were found.
 class LumpedContacts {
  public:
-  /// velocity: (outline vertices) [m/s], changed by impulses; inverse_mass: (outline vertices) [m/kg];
-  /// push_out beta: share of a penetration that a step removes. Keeps references.
+  /// velocity: (outline vertices) [m/s], u_found when constructed, then changed by the caller and by
+  /// impulses; inverse_mass: (outline vertices) [m/kg]. Keeps references.
   LumpedContacts(std::span<const OutlineContact> contacts, std::span<const Wall<2>> walls,
-                 std::span<Vec<2>> velocity, std::span<const double> inverse_mass, double dt,
-                 double push_out);
+                 std::span<Vec<2>> velocity, std::span<const double> inverse_mass, double dt);
 
   int size() const { return static_cast<int>(contacts_.size()); }
   Mat<2> delassus_block(int contact) const {
@@ -25,6 +26,8 @@ class LumpedContacts {
   void apply_impulse(int contact, const Vec<2>& dp);
 
  private:
+  Vec<2> velocity_between(const OutlineContact& contact) const;
+
   std::span<const OutlineContact> contacts_;
   std::span<const Wall<2>> walls_;
   std::span<Vec<2>> velocity_;

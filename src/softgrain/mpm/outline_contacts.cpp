@@ -190,6 +190,15 @@ std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, 
   return contacts;
 }
 
+double gap_now(const OutlineContact& contact, const OutlineState& state) {
+  const Vec<2>& x = state.position[contact.vertex];
+  if (contact.wall >= 0) return dot(x - state.walls[contact.wall].point, contact.normal);
+  const Vec<2>& a = state.position[contact.master[0]];
+  const Vec<2> along = state.position[contact.master[1]] - a;
+  const double share = std::clamp(dot(x - a, along) / dot(along, along), 0.0, 1.0);
+  return dot(x - (a + share * along), contact.normal);
+}
+
 std::vector<Vec<2>> carried_impulses(const SoftGrains& grains, std::span<const OutlineContact> old,
                                      std::span<const Vec<2>> old_impulse,
                                      std::span<const OutlineContact> contacts) {

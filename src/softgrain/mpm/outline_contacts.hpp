@@ -51,6 +51,10 @@ class OutlineNeighbours {
   double segment_ = 0;                 // mean length of a segment of the round grains [m]
 };
 
+/// Gap of a contact when its bodies have moved a little since it was found: the vertex faces the same edge or
+/// wall, at another place of it [m].
+double gap_now(const OutlineContact& contact, const OutlineState& state);
+
 /// Impulses of `old` contacts [N s/m], given to the new contacts of the same vertex and master grain or wall.
 std::vector<Vec<2>> carried_impulses(const SoftGrains& grains, std::span<const OutlineContact> old,
                                      std::span<const Vec<2>> old_impulse,
