@@ -40,7 +40,7 @@ std::vector<T> vtp_array(const std::string& file, const std::string& name) {
     at += packed[b];
   }
   std::vector<T> values(raw.size() / sizeof(T));
-  std::memcpy(values.data(), raw.data(), raw.size());
+  if (!raw.empty()) std::memcpy(values.data(), raw.data(), raw.size());
   return values;
 }
 
