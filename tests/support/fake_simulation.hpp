@@ -24,6 +24,7 @@ class BouncingBall : public Simulation {
   double time() const override { return 0.005 * static_cast<double>(step_); }
   std::int64_t steps_done() const override { return step_; }
   std::int64_t steps_planned() const override { return last_step; }
+  bool at_turning_point() const override { return false; }
 
   StepReport step() override {
     if (step_ == breaks_at) throw NumericalError("step 17: position of particle 0 is not finite");

@@ -21,6 +21,7 @@ class BpmCompression final : public Simulation {
   double time() const override { return static_cast<double>(step_) * case_.time.step; }
   std::int64_t steps_done() const override { return step_; }
   std::int64_t steps_planned() const override { return path_.steps(); }
+  bool at_turning_point() const override { return step_ > 0 && path_.leg(step_) != path_.leg(step_ - 1); }
   StepReport step() override;
   std::vector<Quantity> observe() override;
   Scene scene() const override;

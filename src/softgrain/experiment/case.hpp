@@ -55,7 +55,7 @@ struct Case {
     double wall_velocity = 0.2;               ///< of the top plate [m/s]
     double max_strain = 0.35;                 ///< grain strain eps at the end of loading
     std::vector<double> unload_at{0.1, 0.3};  ///< strains at which the plate turns back
-    double unload_by = 0.012;                 ///< strain given back before loading again
+    double unload_by = 0.015;                 ///< strain given back before loading again
   } loading;
 
   struct Time {

@@ -59,7 +59,8 @@ RunRecorder::RunRecorder(const RunPaths& paths, RunRequest request, Progress& pr
   record_.command = request_.command;
   record_.started = utc_now();
   record_.seed = request_.the_case.sample.seed;
-  record_.tolerance = request_.the_case.solver.tolerance;
+  const Case& the_case = request_.the_case;
+  record_.tolerance = the_case.experiment.model == "mpm" ? the_case.mpm.tolerance : the_case.solver.tolerance;
 }
 
 double RunRecorder::wall_seconds() const {
@@ -146,7 +147,8 @@ bool RunRecorder::after_step(Simulation& simulation, const StepReport& step, con
   const bool last = simulation.finished();
   const bool stop = !last && stop_wanted();
   if (last || shares_done(simulation, request_.the_case.output.samples) > rows_due_) write_row(simulation);
-  const bool snapshot_due = shares_done(simulation, request_.the_case.output.snapshots) > snapshots_due_;
+  const bool snapshot_due = simulation.at_turning_point() ||
+                            shares_done(simulation, request_.the_case.output.snapshots) > snapshots_due_;
   if (signals_.take_snapshot_request() || last || stop || snapshot_due) save(simulation);
   progress_.update(simulation.progress(), last_row_);
   return !stop;
