@@ -201,7 +201,9 @@ Wide elastic_energy(const SoftGrains& grains, const GrainBatch& batch) {
 }
 
 std::vector<PointState> point_states(const SoftGrains& grains, int grain) {
-  const auto& [batch, lane] = grains.batch_of(grain);
+  const auto place = grains.batch_of(grain);
+  const GrainBatch* batch = place.first;  // not a structured binding: clang 14 keeps those out of lambdas
+  const int lane = place.second;
   std::vector<PointState> states;
   std::visit(
       [&]<class Law>(const Law& law) {

@@ -8,7 +8,7 @@ namespace softgrain {
 
 SoftGrains::SoftGrains(std::vector<GrainPlacement> grains, AnyLaw material, double mass_density,
                        bool dilatation)
-    : law(std::move(material)), density(mass_density), mean_dilatation(dilatation) {
+    : law(material), density(mass_density), mean_dilatation(dilatation) {
   require(density > 0, "the density must be > 0, got {} kg/m^3", density);
   place_.resize(grains.size());
   outline_begin_.push_back(0);
