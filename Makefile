@@ -5,13 +5,13 @@
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-6s %s\n", $$1, $$2}' Makefile
 
-demo: ## one soft grain between two plates: builds, simulates, draws (out/demo)
+demo: ## one soft grain between two plates: builds, simulates, draws (out/demo/figures)
 	@tools/install_dependencies.sh
 	cmake --preset release
 	cmake --build --preset release
 	build/release/softgrain run experiments/diametral_bpm/case.toml -o out/demo --force
 	build/release/softgrain plot out/demo
-	@echo "The pictures lie in out/demo, the numbers in out/demo/series.csv"
+	@echo "The pictures lie in out/demo/figures, the numbers in out/demo/series.csv"
 
 test: ## builds with warnings as errors and runs all tests
 	@tools/install_dependencies.sh
