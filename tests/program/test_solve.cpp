@@ -19,22 +19,24 @@ ProcessResult solve(std::vector<std::string> arguments) {
 }  // namespace
 
 TEST_CASE("solve converges on all problems by default and says so as JSON") {
-  for (const auto& [name, contacts, dimension] : {std::tuple{"FrictionContactProblem00071", 89, 2},
-                                                  {"FrictionContactProblem00237", 376, 2},
-                                                  {"fc2d_granularflowonwall_02020_00213", 2020, 2},
-                                                  {"local_problem_test", 48, 3},
-                                                  {"LMGC_100_PR_PerioBox-i00361-60-03000", 60, 3},
-                                                  {"Box_Stacks-i0122-82-5", 82, 3}}) {
-    CAPTURE(name);
-    const std::string file = folder + name + ".hdf5";
+  struct Problem {
+    const char* name;
+    int contacts, dimension;
+  };
+  for (const Problem& problem :
+       {Problem{"FrictionContactProblem00071", 89, 2}, Problem{"FrictionContactProblem00237", 376, 2},
+        Problem{"fc2d_granularflowonwall_02020_00213", 2020, 2}, Problem{"local_problem_test", 48, 3},
+        Problem{"LMGC_100_PR_PerioBox-i00361-60-03000", 60, 3}, Problem{"Box_Stacks-i0122-82-5", 82, 3}}) {
+    CAPTURE(problem.name);
+    const std::string file = folder + problem.name + ".hdf5";
     const ProcessResult result = solve({file, "--json"});
     CHECK(result.exit_code == 0);
     CHECK(result.err.empty());
     const auto json = nlohmann::json::parse(result.out);
     CHECK(json.at("file") == file);
     CHECK(json.at("method") == "nesterov");
-    CHECK(json.at("contacts") == contacts);
-    CHECK(json.at("dimension") == dimension);
+    CHECK(json.at("contacts") == problem.contacts);
+    CHECK(json.at("dimension") == problem.dimension);
     CHECK(json.at("sweeps") > 10);
     CHECK(json.at("natural_map_residual") <= 1e-8);
     CHECK(json.at("energy") < 0);

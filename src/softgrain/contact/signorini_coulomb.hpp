@@ -87,7 +87,7 @@ inline Vec<3> slide(const ClosedContact<3>& contact, double mu) {
     const double tangential = norm(p_t);
     const double ratio = mu * contact.normal_impulse(p_t) / tangential;
     (ratio < 1 ? low : high) = s;
-    if (std::abs(ratio - 1) < 1e-15) break;
+    if (std::abs(ratio - 1) < 1e-14) break;
     const Vec<2> dp_t = -solve_shifted(contact.T, s, p_t);  // d p_t / ds
     const double dratio = -mu * dot(contact.W_nt, dp_t) / (contact.W_nn * tangential) -
                           ratio * dot(p_t, dp_t) / (tangential * tangential);
