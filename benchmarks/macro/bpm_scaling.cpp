@@ -11,13 +11,14 @@ using namespace softgrain::bench;
 
 namespace {
 
-constexpr int smallest = 500, steps_before = 1000, steps_measured = 500;
+constexpr int smallest = 500, steps_before = 1000, steps_measured = 200;
 
 struct Cost {
   double preparation = 0, step = 0;  // [s]
+  double sweeps = 0;                 // per step
 };
 
-/// The paper's grain from other numbers of primaries: the step shrinks with their size, so that a primary
+/// The paper's grain from other numbers of primaries: the time step shrinks with them, so that a primary
 /// moves as far in units of its diameter.
 Cost cost_of(int primaries) {
   Case paper;
@@ -25,12 +26,16 @@ Cost cost_of(int primaries) {
   paper.bpm.primaries = primaries;
   const double start = cpu_seconds();
   BpmCompression simulation(paper);
-  const double prepared = cpu_seconds();
+  Cost cost{.preparation = cpu_seconds() - start};
   for (int k = 0; k < steps_before; ++k) simulation.step();
-  const auto steps = [&] {
-    for (int k = 0; k < steps_measured; ++k) simulation.step();
-  };
-  return {.preparation = prepared - start, .step = fastest({steps})[0] / steps_measured};
+  cost.step = fastest({[&] {
+                BpmCompression copy = simulation;
+                cost.sweeps = 0;
+                for (int k = 0; k < steps_measured; ++k) cost.sweeps += copy.step().sweeps;
+              }})[0] /
+              steps_measured;
+  cost.sweeps /= steps_measured;
+  return cost;
 }
 
 }  // namespace
@@ -51,5 +56,8 @@ int main(int argc, char** argv) {
     };
     add("preparation", cost.preparation, reference.preparation);
     add("step", cost.step, reference.step);
+    add("step divided by its sweeps", cost.step / cost.sweeps, reference.step / reference.sweeps);
+    results.add(
+        {.what = fmt::format("{} primaries: sweeps per step", primaries), .value = cost.sweeps, .unit = ""});
   }
 }
