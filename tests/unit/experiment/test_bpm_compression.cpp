@@ -88,8 +88,10 @@ TEST_CASE("a restored compression goes on bit for bit, whenever it was saved") {
 }
 
 TEST_CASE("a restored compression shows at once what the saved one showed") {
-  BpmCompression saved(small_case()), restored(small_case());
-  advance(saved, 120);
+  Case c = small_case();
+  c.loading.max_strain = 0.5;
+  BpmCompression saved(c), restored(c);
+  advance(saved, 3000);  // far enough for primaries to have found other neighbours
   restored.restore(saved.checkpoint());
   const Scene a = saved.scene(), b = restored.scene();
   for (const char* field : {"position", "velocity", "radius", "coordination"})
@@ -183,6 +185,57 @@ TEST_CASE("a row's wall forces are means over the steps since the last row") {
   CHECK(value_of(row, "force_bottom") == doctest::Approx(bottom).epsilon(1e-12));
   CHECK(value_of(row, "force_top") == doctest::Approx(top).epsilon(1e-12));
   CHECK(value_of(row, "stress_top") == doctest::Approx(top / value_of(row, "width")).epsilon(1e-12));
+}
+
+TEST_CASE("the width is that of the grain, and the scene's contacts are those of the row") {
+  BpmCompression simulation(small_case());
+  advance(simulation, 200);
+  while (simulation.dynamics().wall_impulse(1) == Vec<2>{}) simulation.step();
+  const auto& particles = simulation.dynamics().particles;
+  double left = 1, right = -1;
+  for (int i = 0; i < particles.size(); ++i) {
+    left = std::min(left, particles.position[i][0] - particles.radius[i]);
+    right = std::max(right, particles.position[i][0] + particles.radius[i]);
+  }
+  const auto row = simulation.observe();
+  CHECK(value_of(row, "width") == doctest::Approx(right - left).epsilon(1e-13));
+
+  const Scene scene = simulation.scene();
+  const auto& pairs = std::get<std::vector<std::int64_t>>(scene.contacts.at("pair").values);
+  const auto& coordination = std::get<std::vector<double>>(scene.particles.at("coordination").values);
+  const double inner = static_cast<double>(pairs.size()) / 2, contacts = value_of(row, "contacts");
+  CHECK(value_of(row, "z_primaries") == doctest::Approx(2 * inner / 60).epsilon(1e-14));
+  CHECK(contacts > inner);  // the plates'
+  // an inner contact belongs to two primaries, one with a plate to one
+  CHECK(std::accumulate(coordination.begin(), coordination.end(), 0.0) == contacts + inner);
+}
+
+TEST_CASE("in a grain without load the pushing contacts balance the pulling attraction") {
+  Case c = small_case();
+  c.loading.wall_velocity = 1e-3;
+  BpmCompression simulation(c);
+  advance(simulation, 1000);
+  const auto scene = simulation.scene();
+  const auto& pressure = std::get<std::vector<double>>(scene.particles.at("pressure").values);
+  const auto& radius = std::get<std::vector<double>>(scene.particles.at("radius").values);
+  double sum = 0, squares = 0;
+  for (std::size_t i = 0; i < radius.size(); ++i) {
+    sum += radius[i] * radius[i] * pressure[i];
+    squares += radius[i] * radius[i];
+  }
+  CHECK(std::abs(sum / squares) < 0.02 * simulation.sigma_I());
+}
+
+TEST_CASE("a grain torn in two counts two clusters") {
+  BpmCompression simulation(small_case());
+  CHECK(value_of(simulation.observe(), "clusters") == 1);
+  Checkpoint torn = simulation.checkpoint();
+  const double a0 = small_case().bpm.attraction / simulation.sigma_I();
+  auto& x = std::get<std::vector<double>>(torn.arrays.at("position").values);
+  for (std::size_t i = 0; i < x.size(); i += 2)
+    if (x[i] > 0) x[i] += 0.8 * a0;  // still within the reach of the attraction
+  simulation.restore(torn);
+  CHECK(value_of(simulation.observe(), "clusters") == 2);
 }
 
 TEST_CASE("a compression that cannot be run is refused with the key and the value") {

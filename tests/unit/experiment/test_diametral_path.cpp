@@ -25,14 +25,15 @@ TEST_CASE("the plate goes down, turns back at each strain asked for by the strai
   for (std::int64_t step = 0; step < path.steps(); ++step) {
     if (path.leg(step) != leg) {
       REQUIRE(path.leg(step) == leg + 1);
-      REQUIRE(travel == doctest::Approx(plate_travel(turning_strain[leg], R)).epsilon(1e-4));
+      // each leg is rounded to whole steps
+      REQUIRE(std::abs(travel - plate_travel(turning_strain[leg], R)) < 0.501 * (leg + 1) * v * dt);
       leg = path.leg(step);
     }
     REQUIRE(path.plate_velocity(step) == (leg % 2 == 0 ? -v : v));
     travel -= path.plate_velocity(step) * dt;
   }
   CHECK(leg == 4);
-  CHECK(travel == doctest::Approx(plate_travel(0.35, R)).epsilon(1e-4));
+  CHECK(std::abs(travel - plate_travel(0.35, R)) < 2.501 * v * dt);
   CHECK(path.leg(path.steps()) == 4);  // the path has ended, on its last leg
 }
 
