@@ -56,6 +56,10 @@ BoxSample sample_box(const BoxSampleOptions& options) {
     area += std::numbers::pi * diameter * diameter / 4;
   }
   sample.side = std::sqrt(area / options.packing_fraction);
+  for (const PlacedGrain& grain : sample.grains)
+    require(2 * (1 + options.clearance) * grain.radius <= sample.side,
+            "a grain of diameter {} m has no room in a box of {} m; use a smaller packing fraction",
+            2 * grain.radius, sample.side);
   for (int i = 0; i < options.grains; ++i) {
     sample.grains[i].angle = 2 * std::numbers::pi * random_uniform(options.seed, Stream::angles, i);
     for (int k = 0; k < 2; ++k)
