@@ -1,0 +1,203 @@
+#include "softgrain/mpm/equilibrium.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "support/soft_grains.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+struct Setting {
+  const char* law;
+  bool mean_dilatation;
+};
+
+/// Ten grains of different radii and angles on a coarse grid: two batches, the second with empty lanes.
+SoftGrains ten_grains(const Setting& setting, double nu = 0.3) {
+  const auto shape = test::disk(2);
+  std::vector<GrainPlacement> grains;
+  for (int g = 0; g < 10; ++g) grains.push_back(test::placed(shape, 1 + 0.1 * g, {3.0 * g, 1}, {}, 0.4 * g));
+  return {std::move(grains), make_law(setting.law, 1, nu), 1, setting.mean_dilatation};
+}
+
+const std::vector<Setting> settings{{"neo_hookean", false},
+                                    {"neo_hookean", true},
+                                    {"neo_hookean_quadratic", true},
+                                    {"hencky", false},
+                                    {"small_strain_hooke", false}};
+
+double largest(const Vec<2, Wide>& v) {
+  double size = 0;
+  for (int lane = 0; lane < Wide::size; ++lane) size = std::max(size, norm(test::lane_of(v, lane)));
+  return size;
+}
+
+}  // namespace
+
+TEST_CASE("internal force is the derivative of the elastic energy") {
+  for (const Setting& setting : settings) {
+    CAPTURE(setting.law);
+    CAPTURE(setting.mean_dilatation);
+    SoftGrains grains = ten_grains(setting);
+    test::shake(grains, 0.05);
+    GrainBatch& batch = grains.batches[0];
+    WideVectors force;
+    REQUIRE(internal_force(grains, batch, force) == 0);
+    constexpr double step = 1e-6;
+    double worst = 0;
+    for (std::size_t i = 0; i < batch.position.size(); ++i)
+      for (int d = 0; d < 2; ++d) {
+        const Wide x = batch.position[i][d];
+        batch.position[i][d] = x + Wide(step);
+        const Wide above = elastic_energy(grains, batch);
+        batch.position[i][d] = x - Wide(step);
+        const Wide below = elastic_energy(grains, batch);
+        batch.position[i][d] = x;
+        for (int lane = 0; lane < Wide::size; ++lane)
+          worst = std::max(worst, std::abs((above - below)[lane] / (2 * step) - force[i][d][lane]));
+      }
+    CHECK(worst < 1e-7);
+  }
+}
+
+// K is seen through its factor: of (A + K) x = b the solution must satisfy A x + K x = b with K x by
+// differences of the force.
+TEST_CASE("the stiffness in the Cholesky factor is the derivative of the internal force") {
+  for (const Setting& setting : settings) {
+    CAPTURE(setting.law);
+    CAPTURE(setting.mean_dilatation);
+    SoftGrains grains = ten_grains(setting);
+    test::shake(grains, 0.05);
+    GrainBatch& batch = grains.batches[0];
+    BatchedCholesky matrix(batch.topology->pattern);
+    matrix.clear();
+    add_stiffness(grains, batch, matrix);
+    const int nodes = batch.topology->grid.nodes();
+    constexpr double shift = 2;
+    for (int i = 0; i < nodes; ++i) matrix.add(i, i, {shift, 0.0, 0.0, shift});
+    REQUIRE(matrix.factor() == 0);
+    test::RandomNumbers random(8);
+    std::vector<Wide> b(2 * nodes);
+    for (Wide& entry : b)
+      for (int lane = 0; lane < Wide::size; ++lane) entry.set(lane, random.uniform(-1, 1));
+    std::vector<Wide> x = b;
+    matrix.solve(x);
+
+    constexpr double step = 1e-6;
+    const WideVectors start = batch.position;
+    const auto force_at = [&](double s) {
+      for (int i = 0; i < nodes; ++i)
+        for (int d = 0; d < 2; ++d) batch.position[i][d] = start[i][d] + Wide(s) * x[2 * i + d];
+      WideVectors force;
+      internal_force(grains, batch, force);
+      return force;
+    };
+    const WideVectors above = force_at(step), below = force_at(-step);
+    double worst = 0;
+    for (int i = 0; i < nodes; ++i)
+      for (int d = 0; d < 2; ++d)
+        for (int lane = 0; lane < Wide::size; ++lane) {
+          const double Kx = (above[i][d] - below[i][d])[lane] / (2 * step);
+          worst = std::max(worst, std::abs(shift * x[2 * i + d][lane] + Kx - b[2 * i + d][lane]));
+        }
+    CHECK(worst < 1e-8);
+  }
+}
+
+TEST_CASE("a grain turned and moved as a rigid body feels no force and has no energy") {
+  for (const Setting& setting : settings) {
+    if (setting.law == std::string("small_strain_hooke")) continue;  // small rotations only
+    CAPTURE(setting.law);
+    SoftGrains grains = ten_grains(setting);
+    test::move_nodes(grains, [](int lane, const Vec<2>& x) {
+      const double c = std::cos(0.7 * lane), s = std::sin(0.7 * lane);
+      return Vec<2>{c * x[0] - s * x[1] + 5, s * x[0] + c * x[1] - 2};
+    });
+    for (const GrainBatch& batch : grains.batches) {
+      WideVectors force;
+      REQUIRE(internal_force(grains, batch, force) == 0);
+      for (const auto& f : force) CHECK(largest(f) < 1e-13);
+      for (int lane = 0; lane < Wide::size; ++lane)
+        CHECK(std::abs(elastic_energy(grains, batch)[lane]) < 1e-13);
+    }
+  }
+}
+
+TEST_CASE("internal forces sum to zero, and so do their moments about any point") {
+  for (const Setting& setting : settings) {
+    if (setting.law == std::string("small_strain_hooke")) continue;  // its stress is not objective
+    CAPTURE(setting.law);
+    SoftGrains grains = ten_grains(setting);
+    test::shake(grains, 0.05);
+    const GrainBatch& batch = grains.batches[0];
+    WideVectors force;
+    internal_force(grains, batch, force);
+    Vec<2, Wide> sum;
+    Wide moment = 0.0;
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      sum += force[i];
+      moment += batch.position[i][0] * force[i][1] - batch.position[i][1] * force[i][0];
+    }
+    CHECK(largest(sum) < 1e-14);
+    for (int lane = 0; lane < Wide::size; ++lane) CHECK(std::abs(moment[lane]) < 1e-13);
+  }
+}
+
+TEST_CASE("patch test: one F everywhere gives one stress everywhere, and forces on the outline only") {
+  const Mat<2> F{{1.1, 0.2, -0.1, 0.9}};
+  for (const Setting& setting : settings) {
+    CAPTURE(setting.law);
+    CAPTURE(setting.mean_dilatation);
+    const auto shape = test::disk(3);
+    SoftGrains grains({test::placed(shape, 2, {0, 0})}, make_law(setting.law, 1, 0.3), 1,
+                      setting.mean_dilatation);
+    test::move_nodes(grains, [&](int, const Vec<2>& x) { return F * x; });
+    const auto states = point_states(grains, 0);
+    REQUIRE(states.size() == shape->points.size());
+    const Mat<2> P = std::visit([&](const auto& law) { return law.stress(F); }, grains.law);
+    const double J = F(0, 0) * F(1, 1) - F(0, 1) * F(1, 0);
+    for (const PointState& point : states)
+      for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 2; ++j) {
+          CHECK(point.F(i, j) == doctest::Approx(F(i, j)));
+          const double cauchy = (P(i, 0) * F(j, 0) + P(i, 1) * F(j, 1)) / J;
+          CHECK(std::abs(point.stress(i, j) - cauchy) < 1e-14);
+        }
+    CHECK(states[0].pressure == doctest::Approx(-(states[0].stress(0, 0) + states[0].stress(1, 1)) / 2));
+    WideVectors force;
+    internal_force(grains, grains.batches[0], force);
+    const ReferenceGrid& grid = shape->grid;
+    for (int i = 0; i < grid.outline_begin; ++i) CHECK(largest(force[i]) < 1e-14);
+    // on the outline the force is P N over half of each edge: P (X_next - X_previous) turned right, over 2
+    const int n = grid.outline_nodes();
+    for (int k = 0; k < n; ++k) {
+      const auto X = grid.outline();
+      const Vec<2> chord = X[(k + 1) % n] - X[(k + n - 1) % n];
+      const Vec<2> traction = P * (-1.0 * perpendicular(chord));  // R/2 = 1
+      CHECK(norm(test::lane_of(force[grid.outline_begin + k], 0) - traction) < 1e-14);
+    }
+  }
+}
+
+TEST_CASE("a grain turned inside out is named by its lane") {
+  SoftGrains grains = ten_grains({"neo_hookean", false});
+  GrainBatch& batch = grains.batches[0];
+  for (Vec<2, Wide>& x : batch.position) x[1].set(3, -x[1][3]);  // the mirror image
+  WideVectors force;
+  CHECK(internal_force(grains, batch, force) == 1u << 3);
+}
+
+TEST_CASE("mean dilatation takes the energy of volume from the mean J of a cell") {
+  SoftGrains grains = ten_grains({"neo_hookean", true}, 0.49);
+  test::shake(grains, 0.05);
+  const Wide with = elastic_energy(grains, grains.batches[0]);
+  grains.mean_dilatation = false;
+  const Wide without = elastic_energy(grains, grains.batches[0]);
+  // U is convex near J = 1, so that a mean J stores less
+  for (int lane = 0; lane < Wide::size; ++lane) CHECK(with[lane] < without[lane]);
+}
