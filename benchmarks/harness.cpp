@@ -86,9 +86,9 @@ Results::~Results() {
   csv << "commit,date,processor,flags,benchmark,what,value,unit,ratio,reference\n";
   const BuildInfo build = build_info();
   for (const Measurement& m : rows_)
-    csv << fmt::format("{},{},{},{},{},{},{:.4g},{},{},{}\n", build.commit, today(), processor(), build.flags,
-                       benchmark_, m.what, m.value, m.unit, m.ratio > 0 ? fmt::format("{:.3g}", m.ratio) : "",
-                       m.reference);
+    csv << fmt::format("{},{},{},{},{},\"{}\",{:.4g},{},{},{}\n", build.commit, today(), processor(),
+                       build.flags, benchmark_, m.what, m.value, m.unit,
+                       m.ratio > 0 ? fmt::format("{:.3g}", m.ratio) : "", m.reference);
 }
 
 }  // namespace softgrain::bench
