@@ -39,11 +39,11 @@ void check_same_state(const Simulation& a, const Simulation& b) {
   CHECK(x.step == y.step);
   CHECK(x.time == y.time);
   REQUIRE(x.arrays.size() == y.arrays.size());
-  for (const auto& [name, array] : x.arrays) {
-    CAPTURE(name);
-    REQUIRE(y.arrays.contains(name));
-    CHECK(array.columns == y.arrays.at(name).columns);
-    CHECK((array.values == y.arrays.at(name).values));
+  for (const auto& array : x.arrays) {
+    CAPTURE(array.first);
+    REQUIRE(y.arrays.contains(array.first));
+    CHECK(array.second.columns == y.arrays.at(array.first).columns);
+    CHECK((array.second.values == y.arrays.at(array.first).values));
   }
 }
 
@@ -168,6 +168,20 @@ TEST_CASE("progress runs from zero to one over the planned steps") {
   for (int k = 0; k < 10; ++k) simulation->step();
   CHECK(simulation->finished());
   CHECK(simulation->progress() == 1);
+}
+
+TEST_CASE("a turning point is the state between two legs of the path") {
+  Case c = small_case();
+  c.loading = {.wall_velocity = 4, .max_strain = 0.002, .unload_at = {0.001}, .unload_by = 0.0005};
+  BpmCompression simulation(c);
+  std::vector<std::int64_t> turns;
+  while (!simulation.finished()) {
+    simulation.step();
+    if (simulation.at_turning_point()) turns.push_back(simulation.steps_done());
+  }
+  // 9.995 um down, 5 um up, 15 um down, at 1 um a step
+  CHECK(turns == std::vector<std::int64_t>{10, 15});
+  CHECK(simulation.steps_done() == 30);
 }
 
 TEST_CASE("a row's wall forces are means over the steps since the last row") {

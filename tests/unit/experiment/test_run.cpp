@@ -16,6 +16,7 @@ class Countdown final : public Simulation {
   double time() const override { return static_cast<double>(done_); }
   std::int64_t steps_done() const override { return done_; }
   std::int64_t steps_planned() const override { return 10; }
+  bool at_turning_point() const override { return false; }
   StepReport step() override {
     const int k = static_cast<int>(++done_);
     return {.sweeps = k, .residual_max = 1.0 / k, .overlap_max = 0.1 * k, .converged = k % 3 == 0};
