@@ -16,6 +16,7 @@ class BouncingBall : public Simulation {
  public:
   int last_step = 400;
   double progress_at_end = 1;  ///< what round-off or an early end makes of it
+  int turns_at = -1;           ///< step after which the load turns
   int breaks_at = -1;          ///< step that raises NumericalError
   useconds_t pause = 0;        ///< a step takes at least this long [us]
 
@@ -24,7 +25,7 @@ class BouncingBall : public Simulation {
   double time() const override { return 0.005 * static_cast<double>(step_); }
   std::int64_t steps_done() const override { return step_; }
   std::int64_t steps_planned() const override { return last_step; }
-  bool at_turning_point() const override { return false; }
+  bool at_turning_point() const override { return step_ == turns_at; }
 
   StepReport step() override {
     if (step_ == breaks_at) throw NumericalError("step 17: position of particle 0 is not finite");

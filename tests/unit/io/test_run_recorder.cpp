@@ -148,6 +148,14 @@ TEST_CASE("the last state is written even when the progress stays a little below
   CHECK_NOTHROW(read_snapshot(directory.path() / "snap" / "s000400.h5"));
 }
 
+TEST_CASE("the state at which the load turns is kept") {
+  const test::TemporaryDirectory directory;
+  BouncingBall ball;
+  ball.turns_at = 123;
+  run_ball(directory.path(), request(), std::move(ball));
+  CHECK_NOTHROW(read_snapshot(directory.path() / "snap" / "s000123.h5"));
+}
+
 TEST_CASE("SIGUSR1 writes a snapshot and the run goes on") {
   const test::TemporaryDirectory directory;
   CHECK(run_until_signal(directory.path(), 122, SIGUSR1).exit_code == 0);
