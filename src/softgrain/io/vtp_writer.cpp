@@ -140,12 +140,12 @@ std::string encode_vtp(const PolyData& data) {
   const std::size_t lines = data.lines.size() / 2;
   VtpText text;
   text.line(R"(<?xml version="1.0"?>)");
-  text.line(
-      R"(<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64" compressor="vtkZLibDataCompressor">)");
+  text.line(R"(<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" )"
+            R"(header_type="UInt64" compressor="vtkZLibDataCompressor">)");
   text.line("<PolyData>");
-  text.line(fmt::format(
-      R"(<Piece NumberOfPoints="{}" NumberOfVerts="{}" NumberOfLines="{}" NumberOfStrips="0" NumberOfPolys="0">)",
-      points, data.has_lines ? 0 : points, lines));
+  text.line(fmt::format(R"(<Piece NumberOfPoints="{}" NumberOfVerts="{}" NumberOfLines="{}" )"
+                        R"(NumberOfStrips="0" NumberOfPolys="0">)",
+                        points, data.has_lines ? 0 : points, lines));
   text.line("<PointData>");
   for (const auto& [name, array] : data.point_data) text.array(name, array);
   text.line("</PointData>\n<CellData>");
