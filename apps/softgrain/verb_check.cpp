@@ -1,12 +1,14 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/io/case_file.hpp"
 #include "softgrain/io/case_text.hpp"
+#include "softgrain/io/progress.hpp"
 #include "verbs.hpp"
 
 namespace softgrain {
@@ -20,7 +22,7 @@ struct CheckOptions {
 void print_json(const Case& the_case, const Estimate& estimate) {
   const nlohmann::ordered_json result{{"case", nlohmann::ordered_json::parse(case_json(the_case))},
                                       {"estimate",
-                                       {{"primaries", estimate.primaries},
+                                       {{"particles", estimate.particles},
                                         {"contacts", estimate.contacts},
                                         {"steps", estimate.steps},
                                         {"memory_bytes", estimate.memory},
@@ -28,13 +30,17 @@ void print_json(const Case& the_case, const Estimate& estimate) {
   fmt::print("{}\n", result.dump(2));
 }
 
-void print_estimate(const Estimate& estimate) {
+void print_estimate(const Case& the_case, const Estimate& estimate) {
+  const bool bpm = the_case.experiment.model == "bpm";
+  const auto count = [](double number) { return grouped(std::llround(number)); };
   fmt::print(stderr,
-             "{} primary particles, about {} contacts\n"
-             "{} time steps\n"
+             "{} {}, about {} contacts\n"
+             "about {} time steps\n"
              "about {:.0f} MB of memory\n"
-             "at most {:.2g} h on one thread (every step with all sweeps)\n",
-             estimate.primaries, estimate.contacts, estimate.steps, estimate.memory / 1e6, estimate.hours);
+             "{} {} on one thread\n",
+             count(estimate.particles), bpm ? "primary particles" : "material points",
+             count(estimate.contacts), count(estimate.steps), estimate.memory / 1e6,
+             bpm ? "at most" : "about", duration_text(3600 * estimate.hours));
 }
 
 void check(const CheckOptions& options) {
@@ -43,7 +49,7 @@ void check(const CheckOptions& options) {
   if (options.json) return print_json(the_case, cost);
   fmt::print("{}", resolved_case_text(the_case));
   std::fflush(stdout);
-  print_estimate(cost);
+  print_estimate(the_case, cost);
 }
 
 }  // namespace

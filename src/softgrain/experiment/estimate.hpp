@@ -5,16 +5,17 @@
 
 namespace softgrain {
 
-/// What a run will take, before it runs. Steps are exact; the rest is good to a factor of about two.
+/// What a run will take, before it runs; a guide, good to a factor of about two.
 struct Estimate {
-  std::int64_t primaries = 0;
-  std::int64_t contacts =
-      0;                   ///< 2.2 per primary: a dense packing of disks has about 2, some more come and go
-  std::int64_t steps = 0;  ///< of the loading path; the preparation of the grain comes on top
-  double memory = 0;       ///< [bytes] 50 MB + 1 kB per primary + 200 B per contact
-  double hours = 0;        ///< [h] at most: contacts x max_sweeps x steps, at 15 million contacts per second
+  double particles = 0;  ///< bpm: primary particles; mpm: material points, 14 cells^2 in a grain
+  double contacts =
+      0;  ///< bpm: 2.2 per primary, a dense packing has about 2; mpm: half of the outlines' vertices
+  double steps = 0;   ///< of the loading path; preparing the sample comes on top
+  double memory = 0;  ///< [bytes] 50 MB + 1 kB per particle + 200 B per contact
+  double hours = 0;   ///< [h] on one thread; bpm: at most, every step with all sweeps
 };
 
+/// Estimates a valid case.
 Estimate estimate(const Case& the_case);
 
 }  // namespace softgrain

@@ -58,6 +58,21 @@ Json value_schema(const Key& key) {
   return whole;
 }
 
+Case diametral_mpm() {
+  Case c;
+  c.experiment.model = "mpm";
+  return c;
+}
+
+/// Grains, speed and packing fraction of the paper's packings.
+Case compaction_mpm() {
+  Case c;
+  c.experiment = {.loading = "compaction", .model = "mpm"};
+  c.sample.grains = 300;
+  c.loading = {.wall_velocity = 5, .max_strain = 0.3, .unload_at = {}, .unload_by = c.loading.unload_by};
+  return c;
+}
+
 }  // namespace
 
 std::string resolved_case_text(const Case& the_case) {
@@ -138,6 +153,8 @@ std::string case_reference_page() {
 const std::vector<CaseTemplate>& case_templates() {
   static const std::vector<CaseTemplate> templates{
       {"diametral-bpm", "one grain of rigid primary particles between two plates", Case{}},
+      {"diametral-mpm", "one elastic grain between two plates", diametral_mpm()},
+      {"compaction-mpm", "300 elastic grains in a box whose lid comes down", compaction_mpm()},
   };
   return templates;
 }

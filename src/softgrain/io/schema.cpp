@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softgrain/experiment/estimate.hpp"
 #include "softgrain/material/any_law.hpp"
 
 namespace softgrain {
@@ -110,15 +111,20 @@ std::vector<TableOfKeys> all_tables() {
 // clang-format on
 #undef KEY
 
+/// Only the diametral path turns back.
+std::vector<double> turns(const Case& c) {
+  return c.experiment.loading == "diametral" ? c.loading.unload_at : std::vector<double>{};
+}
+
 std::string unloading_not_ascending(const Case& c) {
-  const auto& strains = c.loading.unload_at;
+  const auto strains = turns(c);
   const auto turn = std::adjacent_find(strains.begin(), strains.end(), std::greater_equal<>{});
   if (turn == strains.end()) return "";
   return fmt::format("loading.unload_at must be ascending: {} stands before {}", *turn, *(turn + 1));
 }
 
 std::string unloading_after_the_end(const Case& c) {
-  const auto& strains = c.loading.unload_at;
+  const auto strains = turns(c);
   const auto late =
       std::find_if(strains.begin(), strains.end(), [&](double eps) { return eps >= c.loading.max_strain; });
   if (late == strains.end()) return "";
@@ -127,7 +133,7 @@ std::string unloading_after_the_end(const Case& c) {
 }
 
 std::string unloading_below_zero(const Case& c) {
-  const auto& strains = c.loading.unload_at;
+  const auto strains = turns(c);
   if (strains.empty() || c.loading.unload_by < strains.front()) return "";
   return fmt::format("loading.unload_by must be below the first of loading.unload_at: {} is not below {}",
                      c.loading.unload_by, strains.front());
@@ -139,12 +145,24 @@ std::string sweeps_reversed(const Case& c) {
                      c.solver.min_sweeps, c.solver.max_sweeps);
 }
 
+std::string diameters_reversed(const Case& c) {
+  if (c.sample.smallest_diameter <= c.sample.largest_diameter) return "";
+  return fmt::format("sample.smallest_diameter must not be above sample.largest_diameter: {} m is above {} m",
+                     c.sample.smallest_diameter, c.sample.largest_diameter);
+}
+
 std::string too_many_steps(const Case& c) {
   constexpr double most = 1e12;
-  const double steps = 2 * c.grain.radius / (c.loading.wall_velocity * c.time.step);
+  const double steps = estimate(c).steps;
   if (steps <= most) return "";
-  return fmt::format(
-      "{:.1g} time steps to cross the grain are too many: raise time.step or loading.wall_velocity", steps);
+  return fmt::format("about {:.1g} time steps are too many: raise the time step or loading.wall_velocity",
+                     steps);
+}
+
+std::string no_such_experiment(const Case& c) {
+  if (c.experiment.loading == "diametral" || c.experiment.model == "mpm") return "";
+  return fmt::format("experiment.loading \"{}\" needs experiment.model \"mpm\" for now",
+                     c.experiment.loading);
 }
 
 }  // namespace
@@ -180,7 +198,10 @@ const std::vector<Relation>& case_relations() {
       {{"loading.unload_at", "loading.max_strain"}, unloading_after_the_end},
       {{"loading.unload_by", "loading.unload_at"}, unloading_below_zero},
       {{"solver.min_sweeps", "solver.max_sweeps"}, sweeps_reversed},
-      {{"time.step", "loading.wall_velocity", "grain.radius"}, too_many_steps},
+      {{"sample.smallest_diameter", "sample.largest_diameter"}, diameters_reversed},
+      {{"time.step", "mpm.time_step", "loading.wall_velocity", "loading.max_strain", "grain.radius"},
+       too_many_steps},
+      {{"experiment.loading", "experiment.model"}, no_such_experiment},
   };
   return relations;
 }

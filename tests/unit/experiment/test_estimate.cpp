@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "softgrain/experiment/compaction_path.hpp"
+#include "softgrain/experiment/diametral_path.hpp"
 #include "softgrain/experiment/estimate.hpp"
 
 using namespace softgrain;
@@ -16,12 +18,37 @@ TEST_CASE("a loading without unloading takes travel over wall velocity over time
   CHECK(estimate(c).steps == 10000);
 }
 
+TEST_CASE("the estimate counts the steps of every path") {
+  Case c;
+  const auto squeeze = static_cast<double>(DiametralPath(c.loading, c.grain.radius, c.time.step).steps());
+  CHECK(estimate(c).steps == doctest::Approx(squeeze).epsilon(1e-3));
+  c.experiment = {.loading = "compaction", .model = "mpm"};
+  c.sample.smallest_diameter = c.sample.largest_diameter = 2e-3;
+  c.sample.packing_fraction = 0.5;
+  c.mpm.time_step = 1e-6;
+  const double side = std::sqrt(c.sample.grains * 3.14159265 * 1e-6 / 0.5);
+  const auto compaction = static_cast<double>(CompactionPath(c.loading, side, 1e-6).steps());
+  CHECK(estimate(c).steps == doctest::Approx(compaction).epsilon(1e-3));
+}
+
 TEST_CASE("half the time step doubles the steps and the hours") {
   Case c;
   const Estimate whole = estimate(c);
   c.time.step /= 2;
   const Estimate half = estimate(c);
-  CHECK(std::abs(half.steps - 2 * whole.steps) <= 10);  // each leg is a whole number of steps
+  CHECK(half.steps == doctest::Approx(2 * whole.steps).epsilon(1e-3));
   CHECK(half.hours == doctest::Approx(2 * whole.hours).epsilon(1e-3));
   CHECK(half.memory == whole.memory);
+}
+
+TEST_CASE("a batch of eight grains costs what one grain costs") {
+  Case c;
+  c.experiment = {.loading = "compaction", .model = "mpm"};
+  c.mpm.time_step = 1e-6;
+  c.sample.grains = 1;
+  const Estimate one = estimate(c);
+  c.sample.grains = 8;
+  const Estimate eight = estimate(c);
+  CHECK(eight.particles == 8 * one.particles);
+  CHECK(eight.hours / eight.steps == doctest::Approx(one.hours / one.steps));
 }

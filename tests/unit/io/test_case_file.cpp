@@ -129,6 +129,11 @@ TEST_CASE("keys that do not fit together are refused where the last of them stan
   CHECK(mentions(refusal("solver.min_sweeps = 100\nsolver.max_sweeps = 99"),
                  "case.toml:2:8: error: solver.min_sweeps"));
   CHECK(mentions(refusal("time.step = 1e-300"), "too many"));
+  CHECK(mentions(refusal("experiment.model = \"mpm\"\nmpm.time_step = 1e-300"), "too many"));
+  CHECK(mentions(refusal("experiment.loading = \"compaction\""), "needs experiment.model \"mpm\""));
+  CHECK(mentions(refusal("sample.smallest_diameter = \"3 mm\""), "0.003 m is above 0.0024 m"));
+  CHECK(refusal("experiment.loading = \"compaction\"\nexperiment.model = \"mpm\"\nloading.max_strain = 0.2")
+            .empty());
   CHECK(refusal("loading.unload_at = []\nloading.max_strain = 0.05").empty());
   CHECK(mentions(refusal("solver.max_sweeps = -1\nsolver.min_sweeps = 60"),
                  "1 error;"));  // 60 > 50 is not judged

@@ -61,6 +61,11 @@ TEST_CASE("the commented case reads back bit for bit") {
     check_equal(parse_case(commented_case_text(c), "case.toml"), c);
 }
 
+TEST_CASE("every template is a valid case") {
+  for (const CaseTemplate& start : case_templates())
+    check_equal(parse_case(commented_case_text(start.content), start.name), start.content);
+}
+
 TEST_CASE("the commented case is written as people write it") {
   const std::string text = commented_case_text(Case{});
   CHECK(text.find("radius = \"5 mm\"\n") != std::string::npos);
