@@ -1,0 +1,153 @@
+#include "softgrain/experiment/mpm_simulation.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "softgrain/core/error.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+Case small_packing(const char* integrator) {
+  Case c;
+  c.experiment = {.loading = "compaction", .model = "mpm"};
+  c.grain.density = 990;
+  c.mpm.cells = 3;
+  c.mpm.integrator = integrator;
+  c.contact.friction = 0.3;
+  c.sample.grains = 5;
+  c.sample.packing_fraction = 0.6;
+  c.loading = {.wall_velocity = 5, .max_strain = 0.35, .unload_at = {}};
+  return c;
+}
+
+Case one_grain() {
+  Case c;
+  c.experiment = {.loading = "diametral", .model = "mpm"};
+  c.mpm.cells = 4;
+  c.loading = {.wall_velocity = 0.2, .max_strain = 0.1, .unload_at = {0.05}, .unload_by = 0.01};
+  return c;
+}
+
+double value_of(const std::vector<Quantity>& row, std::string_view name) {
+  const auto found = std::ranges::find(row, name, &Quantity::name);
+  REQUIRE(found != row.end());
+  return found->value;
+}
+
+void advance(Simulation& simulation, std::int64_t steps) {
+  while (steps-- > 0 && !simulation.finished()) simulation.step();
+}
+
+}  // namespace
+
+TEST_CASE("a packing that goes on from a checkpoint has the bits of one that never stopped") {
+  for (const char* integrator : {"implicit", "explicit"}) {
+    CAPTURE(integrator);
+    const Case c = small_packing(integrator);
+    const auto whole = create_mpm_simulation(c);
+    advance(*whole, 2 * whole->steps_planned() / 3);  // well in contact
+    CHECK(value_of(whole->observe(), "contacts") > 4);
+    advance(*whole, 4);
+    const Checkpoint half = whole->checkpoint();
+    advance(*whole, 4);
+    const auto resumed = create_mpm_simulation(c);
+    resumed->restore(half);
+    CHECK(resumed->steps_done() == half.step);
+    advance(*resumed, 4);
+    const Checkpoint a = whole->checkpoint(), b = resumed->checkpoint();
+    CHECK(a.step == b.step);
+    REQUIRE(a.arrays.size() == b.arrays.size());
+    for (const auto& [name, array] : a.arrays) {
+      CAPTURE(name);
+      CHECK((array.values == b.arrays.at(name).values));
+    }
+    const auto row = whole->observe(), resumed_row = resumed->observe();
+    for (std::size_t k = 0; k < row.size(); ++k) CHECK(row[k].value == resumed_row[k].value);
+  }
+}
+
+TEST_CASE("a packing keeps its grains' mass, and its lid ends at the strain asked for") {
+  const auto simulation = create_mpm_simulation(small_packing("implicit"));
+  const auto start = simulation->observe();
+  CHECK(value_of(start, "phi_0") == doctest::Approx(0.6));
+  CHECK(value_of(start, "phi") == doctest::Approx(0.6));
+  CHECK(value_of(start, "area_ratio") == doctest::Approx(1));
+  CHECK(value_of(start, "least_J") == doctest::Approx(1));
+  CHECK(value_of(start, "z") == 0);
+  advance(*simulation, 1000000);
+  const auto end = simulation->observe();
+  CHECK(value_of(end, "strain") == doctest::Approx(0.35).epsilon(0.02));
+  CHECK(value_of(end, "phi_0") == doctest::Approx(0.6 * std::exp(value_of(end, "strain"))));
+  CHECK(value_of(end, "phi") == doctest::Approx(value_of(end, "phi_0") * value_of(end, "area_ratio")));
+  CHECK(value_of(end, "area_ratio") < 1);
+  CHECK(simulation->progress() == 1);
+  // what the lid's work does not find in motion and strain has been dissipated: by friction, by damping
+  CHECK(value_of(end, "dissipation") > 0);
+  CHECK(value_of(end, "dissipation") < value_of(end, "wall_work"));
+}
+
+TEST_CASE("the coordination number of a packing is that of the pairs that carry impulse") {
+  const auto simulation = create_mpm_simulation(small_packing("implicit"));
+  advance(*simulation, 1000000);
+  const Checkpoint state = simulation->checkpoint();
+  const auto& bodies = std::get<std::vector<std::int64_t>>(state.arrays.at("contact_bodies").values);
+  const auto& impulse = std::get<std::vector<double>>(state.arrays.at("contact_impulse").values);
+  bool touch[5][5] = {};
+  for (std::size_t c = 0; c < bodies.size() / 4; ++c)
+    if (bodies[4 * c + 1] < 0 && impulse[2 * c] > 0)  // 12 outline vertices a grain
+      touch[bodies[4 * c] / 12][bodies[4 * c + 2] / 12] = touch[bodies[4 * c + 2] / 12][bodies[4 * c] / 12] =
+          true;
+  int sides = 0;
+  for (const auto& row : touch)
+    for (const bool t : row) sides += t;
+  CHECK(sides > 0);
+  CHECK(value_of(simulation->observe(), "z") == doctest::Approx(sides / 5.0));
+}
+
+TEST_CASE("one grain between plates starts at rest between them, and turns back where asked") {
+  const auto simulation = create_mpm_simulation(one_grain());
+  const auto start = simulation->observe();
+  CHECK(value_of(start, "wall_height") == doctest::Approx(2 * 5e-3).epsilon(0.02));  // a polygon of 16 sides
+  CHECK(value_of(start, "force_top") == 0);
+  int turns = 0;
+  while (!simulation->finished()) {
+    simulation->step();
+    turns += simulation->at_turning_point();
+  }
+  CHECK(turns == 2);
+  const auto end = simulation->observe();
+  CHECK(value_of(end, "force_top") > 0);
+}
+
+TEST_CASE("a scene has a disk of its area for every material point, and a closed outline for every grain") {
+  const auto simulation = create_mpm_simulation(one_grain());
+  advance(*simulation, 20);
+  const Scene scene = simulation->scene();
+  const auto& radius = std::get<std::vector<double>>(scene.particles.at("radius").values);
+  CHECK(radius.size() == 4 * (4 * 4 + 3 * 16));  // a square of 4 x 4 cells and three rings of 16
+  double area = 0;
+  for (const double r : radius) area += std::numbers::pi * r * r;
+  const double grain = std::numbers::pi * 25e-6;
+  CHECK(area == doctest::Approx(grain * value_of(simulation->observe(), "area_ratio")).epsilon(1e-3));
+  CHECK(std::get<std::vector<double>>(scene.outlines.at("position").values).size() == 2 * 16);
+}
+
+TEST_CASE("an integrator that does not exist and a law that does not exist are refused") {
+  Case c = one_grain();
+  c.mpm.integrator = "semi-implicit";
+  CHECK_THROWS_AS(create_mpm_simulation(c), UsageError);
+  c = one_grain();
+  c.mpm.law = "hooke's";
+  CHECK_THROWS_AS(create_mpm_simulation(c), UsageError);
+}
+
+TEST_CASE("a checkpoint of another case is refused") {
+  const auto simulation = create_mpm_simulation(one_grain());
+  const Checkpoint other = create_mpm_simulation(small_packing("implicit"))->checkpoint();
+  CHECK_THROWS_AS(simulation->restore(other), IoError);
+}

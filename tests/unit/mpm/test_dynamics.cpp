@@ -1,0 +1,114 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/mpm/explicit_step.hpp"
+#include "softgrain/mpm/implicit_step.hpp"
+#include "support/soft_grains.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+/// Two disks of different size that fly at each other, with friction: contact within a few steps.
+SoftGrains colliding_pair() {
+  return {{test::placed(test::disk(3), 1e-3, {0, 0}, {3, 1}),
+           test::placed(test::disk(4), 1.4e-3, {2.42e-3, 0}, {-2, 0.5})},
+          make_law("neo_hookean", 1e7, 0.3),
+          1000,
+          false};
+}
+
+/// Angular momentum about the origin.
+double angular_momentum(const SoftGrains& grains) {
+  double sum = 0;
+  for (const GrainBatch& batch : grains.batches)
+    for (std::size_t i = 0; i < batch.position.size(); ++i) {
+      const Wide moment =
+          batch.position[i][0] * batch.velocity[i][1] - batch.position[i][1] * batch.velocity[i][0];
+      for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+        sum += (grains.node_mass(batch, static_cast<int>(i)) * moment)[lane];
+    }
+  return sum;
+}
+
+template <class Dynamics>
+void check_collision(Dynamics dynamics, double dt, int steps, double momentum_error) {
+  const Vec<2> start = dynamics.grains.momentum();
+  const double spin = angular_momentum(dynamics.grains), energy = dynamics.grains.kinetic_energy();
+  int most_contacts = 0;
+  for (int k = 0; k < steps; ++k) most_contacts = std::max(most_contacts, dynamics.step(dt).contacts);
+  CHECK(most_contacts >= 2);
+  CHECK(dynamics.grains.kinetic_energy() < 0.95 * energy);
+  CHECK(norm(dynamics.grains.momentum() - start) < momentum_error * norm(start));
+  // positions move after forces have acted: angular momentum drifts with dt only
+  CHECK(std::abs(angular_momentum(dynamics.grains) - spin) < 0.02 * std::abs(spin));
+}
+
+}  // namespace
+
+// The proximal term of Newton's matrix takes its share of the last correction.
+TEST_CASE("grains that collide implicitly keep their momentum to the tolerance of Newton's method") {
+  check_collision(ImplicitDynamics(colliding_pair(), {}, {.tolerance = 1e-10, .friction = 0.3}), 1e-6, 40,
+                  1e-11);
+  check_collision(ImplicitDynamics(colliding_pair(), {}, {.friction = 0.3}), 1e-6, 40, 1e-6);
+}
+
+TEST_CASE("grains that collide keep their momentum to round-off, explicitly") {
+  SoftGrains grains = colliding_pair();
+  const double dt = stable_time_step(grains);
+  check_collision(ExplicitDynamics(std::move(grains), {}, {.friction = 0.3}), dt, static_cast<int>(4e-5 / dt),
+                  1e-13);
+}
+
+TEST_CASE("a free grain falls: backward Euler and symplectic Euler give v = g t") {
+  const SoftGrains grains({test::placed(test::disk(2), 1e-3, {0, 0})}, make_law("hencky", 1e6, 0.3), 1000,
+                          false);
+  ImplicitDynamics implicit(grains, {}, {.gravity = {1, -9.81}});
+  ExplicitDynamics explicit_(grains, {}, {.gravity = {1, -9.81}});
+  for (int k = 0; k < 10; ++k) implicit.step(1e-3);
+  const double dt = stable_time_step(grains);
+  for (int k = 0; k < 10; ++k) explicit_.step(dt);
+  const double mass = grains.mass(0);
+  CHECK(implicit.grains.momentum()[0] == doctest::Approx(mass * 1e-2));
+  CHECK(implicit.grains.momentum()[1] == doctest::Approx(-mass * 9.81e-2));
+  CHECK(explicit_.grains.momentum()[1] == doctest::Approx(-mass * 9.81 * 10 * dt));
+}
+
+TEST_CASE("the walls take the momentum that a grain loses") {
+  const auto check = [](auto dynamics, double dt, int steps) {
+    Vec<2> taken;
+    const Vec<2> start = dynamics.grains.momentum();
+    for (int k = 0; k < steps; ++k) {
+      dynamics.step(dt);
+      taken += dynamics.wall_impulse(0);
+    }
+    CHECK(-taken[1] > 0.5 * norm(start));
+    CHECK(std::abs(taken[0]) > 0.05 * norm(start));  // friction
+    CHECK(norm(start - dynamics.grains.momentum() - taken) < 1e-11 * norm(start));
+  };
+  const SoftGrains grains({test::placed(test::disk(4), 1e-3, {0, 1.003e-3}, {1, -2})},
+                          make_law("neo_hookean", 1e7, 0.3), 1000, false);
+  const double dt = stable_time_step(grains);
+  check(ImplicitDynamics(grains, {test::floor_at(0)}, {.tolerance = 1e-10, .wall_friction = 0.3}), 1e-6, 60);
+  check(ExplicitDynamics(grains, {test::floor_at(0)}, {.wall_friction = 0.3}), dt,
+        static_cast<int>(6e-5 / dt));
+}
+
+TEST_CASE("a step that no halving saves ends with a NumericalError that names the grain") {
+  const SoftGrains grains({test::placed(test::disk(2), 1e-3, {0, 0})}, make_law("neo_hookean", 1e6, 0.3),
+                          1000, false);
+  std::vector<Wall<2>> plates{test::floor_at(-0.5e-3),
+                              {.point = {0, -0.6e-3}, .normal = {0, -1}, .velocity = {}}};
+  ImplicitDynamics dynamics(grains, plates, {});
+  CHECK_THROWS_AS(dynamics.step(1e-6), NumericalError);
+}
+
+TEST_CASE("dynamics without grains or with negative friction is refused") {
+  const SoftGrains none({}, make_law("hencky", 1, 0.3), 1, false);
+  CHECK_THROWS_AS(ImplicitDynamics(none, {}, {}), UsageError);
+  CHECK_THROWS_AS(ExplicitDynamics(none, {}, {}), UsageError);
+  CHECK_THROWS_AS(ImplicitDynamics(colliding_pair(), {}, {.friction = -0.1}), UsageError);
+  CHECK_THROWS_AS(ExplicitDynamics(colliding_pair(), {}, {.wall_friction = -0.1}), UsageError);
+}

@@ -1,0 +1,83 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "softgrain/mpm/implicit_step.hpp"
+#include "support/soft_grains.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+constexpr double R = 5e-3, E = 1e7;
+
+struct Squeeze {
+  const char* law = "neo_hookean";
+  double nu = 0.45;
+  bool mean_dilatation = false;
+};
+
+/// F/(E* R) with E* = E/(1 - nu^2) at each approach d/R of the centre to one plate, nearly at rest: the top
+/// plate moves at 0.2 m/s in steps of 5e-5 s.
+std::vector<double> force_at(const Squeeze& squeeze, const std::vector<double>& approach) {
+  constexpr double dt = 5e-5, speed = 0.2;
+  const auto shape = test::disk(16);
+  double reach = 0;
+  for (const Vec<2>& X : shape->grid.outline()) reach = std::max(reach, X[1] * R);
+  ImplicitDynamics dynamics(
+      {{test::placed(shape, R, {0, 0})}, make_law(squeeze.law, E, squeeze.nu), 990, squeeze.mean_dilatation},
+      {test::floor_at(-reach), {.point = {0, reach}, .normal = {0, -1}, .velocity = {0, -speed}}}, {});
+  std::vector<double> force;
+  int step = 0;
+  for (const double d : approach) {
+    for (; step < std::lround(2 * d * R / (speed * dt)); ++step) dynamics.step(dt);
+    const double top = dynamics.wall_impulse(1)[1] / dt, bottom = -dynamics.wall_impulse(0)[1] / dt;
+    CHECK(top == doctest::Approx(bottom).epsilon(0.01));
+    force.push_back((top + bottom) / 2 * (1 - squeeze.nu * squeeze.nu) / (E * R));
+  }
+  return force;
+}
+
+void check_forces(const Squeeze& squeeze, const std::vector<double>& approach,
+                  const std::vector<double>& expected, double tolerance) {
+  const std::vector<double> force = force_at(squeeze, approach);
+  for (std::size_t k = 0; k < force.size(); ++k) {
+    CAPTURE(squeeze.law);
+    CAPTURE(approach[k]);
+    CHECK(force[k] == doctest::Approx(expected[k]).epsilon(tolerance));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a neo-Hookean grain between plates follows the converged finite elements, and Johnson at first") {
+  const std::vector<double> approach{0.02, 0.03, 0.05, 0.1, 0.2, 0.3};
+  const std::vector<double> force = force_at({}, approach);
+  const std::vector<double> reference{.01028, .01681, .03168, .07839, .21604, .43801};  // 54 cells across
+  for (std::size_t k = 0; k < force.size(); ++k) {
+    CAPTURE(approach[k]);
+    CHECK(force[k] == doctest::Approx(reference[k]).epsilon(0.02));
+    if (approach[k] > 0.051) continue;
+    // Johnson 1985: d/R = x/pi (ln(4 pi/x) - 1), x = F/(E* R); solved for x by bisection
+    double low = 0, high = 1;
+    for (int pass = 0; pass < 60; ++pass) {
+      const double x = (low + high) / 2, d = x / std::numbers::pi * (std::log(4 * std::numbers::pi / x) - 1);
+      (d < approach[k] ? low : high) = x;
+    }
+    CHECK(force[k] == doctest::Approx(low).epsilon(0.04));
+  }
+}
+
+TEST_CASE("small-strain Hooke softens where Hencky stiffens") {
+  const std::vector<double> approach{0.1, 0.2, 0.3};
+  check_forces({.law = "small_strain_hooke"}, approach, {.0753, .1882, .3319}, 0.03);
+  check_forces({.law = "hencky"}, approach, {.0797, .2208, .4454}, 0.03);
+}
+
+TEST_CASE("a nearly incompressible grain does not lock with mean dilatation, and does without") {
+  check_forces({.nu = 0.499, .mean_dilatation = true}, {0.1}, {.0799}, 0.02);
+  CHECK(force_at({.nu = 0.499}, {0.1})[0] > 1.1 * .0799);
+}
