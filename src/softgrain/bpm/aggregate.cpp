@@ -18,7 +18,7 @@ namespace {
 constexpr double time_step = 0.05;
 constexpr double bond_pressure = 1;  // F0 / <a0>
 constexpr double dense_fraction = 0.82;
-constexpr int contraction_steps = 3000;
+constexpr int fewest_contraction_steps = 3000;  // 5.2 times the fall to the centre for 1750 primaries
 constexpr int relaxation_steps = 4000;
 
 enum Stream : std::uint32_t { diameters, jitter };
@@ -73,7 +73,8 @@ RigidParticles<2> contracted(RigidParticles<2> loose) {
     }
     damp(particles, 2 / fall_time, force);
   };
-  for (int step = 0; step < contraction_steps; ++step) dynamics.step(field, time_step);
+  const int steps = std::max(fewest_contraction_steps, static_cast<int>(5.2 * fall_time / time_step));
+  for (int step = 0; step < steps; ++step) dynamics.step(field, time_step);
   return dynamics.particles;
 }
 

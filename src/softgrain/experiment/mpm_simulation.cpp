@@ -6,9 +6,6 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/arrays.hpp"
-#include "softgrain/experiment/compaction_path.hpp"
-#include "softgrain/experiment/diametral_path.hpp"
-#include "softgrain/experiment/sample.hpp"
 #include "softgrain/geometry/polygon.hpp"
 #include "softgrain/math/tensor.hpp"
 #include "softgrain/mpm/equilibrium.hpp"
@@ -18,9 +15,6 @@ namespace softgrain {
 namespace {
 
 enum WallIndex : int { bottom, top };
-
-/// From this Poisson's ratio on, cells take their volume change in the mean, against locking.
-constexpr double locking_poisson_ratio = 0.49;
 
 std::vector<int> outline_begins(const SoftGrains& grains) {
   std::vector<int> begin;
@@ -252,79 +246,6 @@ void MpmSimulation<Dynamics>::restore(const Checkpoint& state) {
   from_array<1>(state, "sums", sums);
   sums_ = {sums[0][0], sums[1][0], sums[2][0], sums[3][0], sums[4][0], sums[5][0]};
   step_ = state.step;
-}
-
-namespace {
-
-/// What both integrators need: grains, walls, and how the lid moves.
-struct MpmSetup {
-  std::vector<GrainPlacement> grains;
-  std::vector<Wall<2>> walls;
-};
-
-MpmSetup setup_of(const Case& c) {
-  const auto shape = std::make_shared<const Topology>(disk_grid(c.mpm.cells));
-  MpmSetup setup;
-  if (c.experiment.loading == "diametral") {
-    setup.grains.push_back(
-        {.topology = shape, .radius = c.grain.radius, .centre = {}, .angle = 0, .velocity = {}});
-    double reach = 0;  // the outline is symmetric about both axes
-    for (const Vec<2>& X : shape->grid.outline()) reach = std::max(reach, X[1] * c.grain.radius);
-    setup.walls = {{.point = {0, -reach}, .normal = {0, 1}, .velocity = {}},
-                   {.point = {0, reach}, .normal = {0, -1}, .velocity = {}}};
-    return setup;
-  }
-  const BoxSample sample = sample_box({.grains = c.sample.grains,
-                                       .smallest = c.sample.smallest_diameter,
-                                       .largest = c.sample.largest_diameter,
-                                       .packing_fraction = c.sample.packing_fraction,
-                                       .seed = static_cast<std::uint64_t>(c.sample.seed)});
-  for (const PlacedGrain& grain : sample.grains)
-    setup.grains.push_back({.topology = shape,
-                            .radius = grain.radius,
-                            .centre = grain.centre,
-                            .angle = grain.angle,
-                            .velocity = {}});
-  const double side = sample.side;
-  setup.walls = {{.point = {0, 0}, .normal = {0, 1}, .velocity = {}},
-                 {.point = {0, side}, .normal = {0, -1}, .velocity = {}},
-                 {.point = {0, 0}, .normal = {1, 0}, .velocity = {}},
-                 {.point = {side, 0}, .normal = {-1, 0}, .velocity = {}}};
-  return setup;
-}
-
-std::unique_ptr<PlatePath> path_of(const Case& c, const std::vector<Wall<2>>& walls, double dt) {
-  if (c.experiment.loading == "diametral")
-    return std::make_unique<DiametralPath>(c.loading, c.grain.radius, dt);
-  return std::make_unique<CompactionPath>(c.loading, walls[top].point[1] - walls[bottom].point[1], dt);
-}
-
-}  // namespace
-
-std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
-  MpmSetup setup = setup_of(c);
-  double smallest = setup.grains.front().radius;
-  for (const GrainPlacement& grain : setup.grains) smallest = std::min(smallest, grain.radius);
-  SoftGrains grains(std::move(setup.grains), make_law(c.mpm.law, c.mpm.young_modulus, c.mpm.poisson_ratio),
-                    c.grain.density, c.mpm.poisson_ratio >= locking_poisson_ratio);
-  if (c.mpm.integrator == "implicit") {
-    // the lid goes down by 1 % of the smallest radius, at most, in a step
-    const double dt = c.mpm.time_step > 0 ? c.mpm.time_step : 0.01 * smallest / c.loading.wall_velocity;
-    ImplicitOptions options{.tolerance = c.mpm.tolerance,
-                            .friction = c.contact.friction,
-                            .wall_friction = c.contact.wall_friction};
-    auto path = path_of(c, setup.walls, dt);
-    return std::make_unique<MpmSimulation<ImplicitDynamics>>(
-        ImplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(path), dt);
-  }
-  require(c.mpm.integrator == "explicit", "mpm.integrator must be 'implicit' or 'explicit', got '{}'",
-          c.mpm.integrator);
-  const double dt = c.mpm.time_step > 0 ? c.mpm.time_step : stable_time_step(grains);
-  ExplicitOptions options{
-      .damping_time = 0.5 * dt, .friction = c.contact.friction, .wall_friction = c.contact.wall_friction};
-  auto path = path_of(c, setup.walls, dt);
-  return std::make_unique<MpmSimulation<ExplicitDynamics>>(
-      ExplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(path), dt);
 }
 
 template class MpmSimulation<ImplicitDynamics>;

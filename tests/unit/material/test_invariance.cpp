@@ -59,7 +59,7 @@ double largest_lane_difference(const Law& law) {
 
 }  // namespace
 
-TEST_CASE("a rotated grain has the same energy and the rotated stress; an isotropic one has no axes") {
+TEST_CASE("a rotated grain has the same energy and the rotated stress, and no axes if isotropic") {
   check_rotations<2>();
   check_rotations<3>();
 }
