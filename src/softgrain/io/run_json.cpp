@@ -100,7 +100,6 @@ std::string verdict(const RunReport& report, double tolerance) {
   const double share = static_cast<double>(report.steps_converged) / static_cast<double>(report.steps);
   return fmt::format(
       "converged {:.1f} % of {} steps, worst residual {:.0e} (tolerance {:.0e}), worst overlap {:.0e} of a "
-      "primary's "
       "radius",
       std::floor(1000 * share) / 10, grouped(report.steps), report.residual_max, tolerance,
       report.overlap_max);

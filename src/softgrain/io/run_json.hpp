@@ -34,7 +34,7 @@ std::string encode_run_record(const RunRecord& record);
 RunRecord read_run_record(const std::filesystem::path& path);
 
 /// "converged 99.8 % of 30 012 steps, worst residual 3e-04 (tolerance 2e-05), worst overlap 2e-05 of a
-/// primary's radius". 100 % only when every step converged.
+/// radius". 100 % only when every step converged.
 std::string verdict(const RunReport& report, double tolerance);
 
 /// The command line of this process.

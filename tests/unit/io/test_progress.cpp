@@ -32,7 +32,6 @@ TEST_CASE("the verdict says 100 % only when every step converged") {
       .steps = 30012, .steps_converged = 30011, .sweeps = 1, .residual_max = 3e-4, .overlap_max = 2e-5};
   CHECK(verdict(report, 2e-5) ==
         "converged 99.9 % of 30 012 steps, worst residual 3e-04 (tolerance 2e-05), worst overlap 2e-05 of a "
-        "primary's "
         "radius");
   report.steps_converged = report.steps;
   CHECK(verdict(report, 2e-5).starts_with("converged 100.0 %"));
