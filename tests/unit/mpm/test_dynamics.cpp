@@ -96,6 +96,18 @@ TEST_CASE("the walls take the momentum that a grain loses") {
         static_cast<int>(6e-5 / dt));
 }
 
+TEST_CASE("a step that is too long for Newton's method is halved, and the walls end where it should") {
+  const SoftGrains grains({test::placed(test::disk(4), 1e-3, {0, 1.02e-3})},
+                          make_law("neo_hookean", 1e7, 0.3), 1000, false);
+  ImplicitDynamics dynamics(
+      grains, {test::floor_at(0), {.point = {0, 2.04e-3}, .normal = {0, -1}, .velocity = {0, -1}}}, {});
+  const SoftStepReport report = dynamics.step(1.2e-3);
+  CHECK(report.rejected > 0);
+  CHECK(report.converged);
+  CHECK(dynamics.walls[1].point[1] == doctest::Approx(0.84e-3));
+  CHECK(report.penetration_max < 1e-3);
+}
+
 TEST_CASE("a step that no halving saves ends with a NumericalError that names the grain") {
   const SoftGrains grains({test::placed(test::disk(2), 1e-3, {0, 0})}, make_law("neo_hookean", 1e6, 0.3),
                           1000, false);
