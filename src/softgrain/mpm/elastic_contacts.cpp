@@ -50,7 +50,8 @@ void ElasticContacts::copy_compliance(std::span<const OutlineCompliance> complia
       dofs.clear();
       for (int v = begin; v < grains_.outline_end(grain); ++v)
         if (local_[v] >= 0) dofs.insert(dofs.end(), {2 * (v - begin), 2 * (v - begin) + 1});
-      double* to = &compliance_[condensed_[grain].matrix];
+      double* to =
+          compliance_.data() + condensed_[grain].matrix;  // one past the end where nothing is in contact
       for (const int i : dofs)
         for (const int j : dofs) *to++ = compliance[b][i * width + j][lane];
     }
