@@ -20,6 +20,8 @@ inline ContactProblem problem_of(int dimension, const Eigen::MatrixXd& W, const 
   return problem;
 }
 
+// Products of matrices are lazy: Eigen's own depend on the number of threads in their last bits.
+
 /// A random positive definite W, so that a solution exists, all components coupled; q approaches in half of
 /// the contacts.
 inline ContactProblem random_problem(int dimension, int contacts, double mu, std::uint64_t seed) {
@@ -28,7 +30,7 @@ inline ContactProblem random_problem(int dimension, int contacts, double mu, std
   const auto any = [&](double) { return random.uniform(-1, 1); };
   const Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size, size + dimension).unaryExpr(any);
   const Eigen::VectorXd q = Eigen::VectorXd::Zero(size).unaryExpr(any);
-  return problem_of(dimension, A * A.transpose(), q, mu);
+  return problem_of(dimension, A.lazyProduct(A.transpose()), q, mu);
 }
 
 /// n disks of mass m, one upon the other, fall together with speed v on a floor: every contact (normal only)
@@ -75,7 +77,7 @@ inline ContactProblem squeezed_packing(int per_side, double mu, std::uint64_t se
     }
   Eigen::MatrixXd H(rows.size(), 3 * disks);
   for (std::size_t k = 0; k < rows.size(); ++k) H.row(static_cast<Eigen::Index>(k)) = rows[k];
-  return problem_of(2, H * inverse_mass.asDiagonal() * H.transpose(), H * v, mu);
+  return problem_of(2, (H * inverse_mass.asDiagonal()).eval().lazyProduct(H.transpose()), H * v, mu);
 }
 
 inline Eigen::VectorXd vector_of(const std::vector<double>& numbers) {
@@ -112,9 +114,9 @@ inline LawDefects law_defects(const ContactProblem& problem, const Eigen::Vector
     worst.pull = std::max(worst.pull, -W_nn * p[n]);
     worst.both = std::max(worst.both, std::min(u[n], W_nn * p[n]));
     worst.cone = std::max(worst.cone, W_nn * (p_t.norm() - mu * p[n]));
-    // u_t = -s p_t with s >= 0, and s = 0 inside the cone: |u_t| p_t = -mu p_n u_t
+    // u_t = -s p_t, s >= 0, and s = 0 inside the cone: |u_t| p_t = -mu p_n u_t
     const double slip = (u_t.norm() * p_t + mu * p[n] * u_t).norm();
-    if (p[n] > 0) worst.direction = std::max(worst.direction, slip / (mu * p[n] + 1e-300));
+    if (slip > 0) worst.direction = std::max(worst.direction, slip / (u_t.norm() / W_nn + mu * p[n]));
   }
   return worst;
 }

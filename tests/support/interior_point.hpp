@@ -10,6 +10,7 @@ namespace softgrain::test {
 /// 1e-13 of the largest.
 inline Eigen::VectorXd solve_by_interior_point(const Eigen::MatrixXd& W, const Eigen::VectorXd& q) {
   using Vector = Eigen::VectorXd;
+  Eigen::setNbThreads(1);  // threads cost more than they bring at this size
   const Eigen::Index n = q.size();
   const double scale = W.diagonal().maxCoeff();
   Vector p = Vector::Constant(n, std::max(1e-3, q.cwiseAbs().maxCoeff() / scale));

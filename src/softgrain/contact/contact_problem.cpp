@@ -50,7 +50,7 @@ ContactSolution iterate(const DelassusSystem<Dim>& system, const std::vector<Vec
                         const ContactProblem& problem, const ContactProblemOptions& options, Sweep sweep) {
   ContactSolution best = assess(system, p, problem);
   int sweeps = 0, best_sweeps = 0;
-  const auto hopeless = [&] { return sweeps > 5 * best_sweeps + 1000; };
+  const auto hopeless = [&] { return sweeps > 5 * best_sweeps + 20000; };
   while (best.residual > options.tolerance && sweeps < options.max_sweeps && !hopeless()) {
     for (int k = 0; k < sweeps_between_checks && sweeps < options.max_sweeps; ++k, ++sweeps) sweep();
     ContactSolution now = assess(system, p, problem);

@@ -34,8 +34,8 @@ struct ContactSolution {
   bool converged = false;  ///< residual <= tolerance
 };
 
-/// Solves from p = 0 until the tolerance, max_sweeps, or a residual that has not fallen for four fifths of
-/// all sweeps.
+/// Solves from p = 0 until the tolerance, max_sweeps, or a residual that has not fallen for 20 000 sweeps and
+/// four fifths of all.
 ContactSolution solve_contact_problem(const ContactProblem& problem, const ContactProblemOptions& options);
 
 }  // namespace softgrain

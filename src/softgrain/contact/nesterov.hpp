@@ -27,8 +27,9 @@ class NesterovIteration {
       : system_(system),
         p_(impulse),
         friction_(friction),
-        p_before_(impulse.begin(), impulse.end()),
+        p_before_(impulse.size()),
         u_(impulse.size()),
+        u_before_(impulse.size()),
         u_y_(impulse.size()),
         step_(impulse.size()),
         scale_(impulse.size()),
@@ -39,7 +40,6 @@ class NesterovIteration {
       u_[c] = system.relative_velocity(c);
       shift_[c] = de_saxce_velocity(u_[c], friction[c])[0] - u_[c][0];
     }
-    u_before_ = u_;
     best_ = violation().sum_of_squares;
   }
 

@@ -79,6 +79,17 @@ TEST_CASE("Nesterov finds impulses that obey Signorini and Coulomb in every cont
     }
 }
 
+TEST_CASE("Nesterov does not cycle where friction is large") {
+  for (const double mu : {2.0, 3.0})
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const ContactProblem problem = squeezed_packing(6, mu, seed);
+      const ContactSolution solution = solve(problem, ContactMethod::nesterov, 1e-10);
+      CHECK(solution.converged);
+      const Eigen::VectorXd p = vector_of(solution.impulse);
+      CHECK(law_defects(problem, p, dense_W(problem) * p + vector_of(problem.q)).worst() < 1e-7);
+    }
+}
+
 TEST_CASE("frictional packings dissipate, more with friction than without, by either method") {
   double smooth_energy = 0;
   for (const double mu : {0.0, 0.5}) {
