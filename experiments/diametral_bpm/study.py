@@ -125,8 +125,8 @@ def sensitivity(program, out):
             "output.samples": 800}
     cases = [("reference", {})]
     cases += [(f"time.step {v} us", {"time.step": f'"{v} us"'}) for v in (0.1, 0.5, 1)]
-    cases += [(f"sweeps {v} (fixed)", {"solver.min_sweeps": v, "solver.max_sweeps": v}) for v in (10, 40, 160)]
-    cases += [(f"tolerance {v}", {"solver.tolerance": v, "solver.max_sweeps": 2000}) for v in ("1e-4", "1e-6")]
+    cases += [(f"sweeps {v} (fixed)", {"solver.min_sweeps": v, "solver.max_sweeps": v}) for v in (10, 40)]
+    cases += [("tolerance 1e-4", {"solver.tolerance": "1e-4"})]
     cases += [("density 7800 kg/m3", {"grain.density": '"7800 kg/m^3"'})]
     cases += [(f"speed {v} m/s", {"loading.wall_velocity": f'"{v} m/s"'}) for v in (0.1, 1)]
     cases += [(f"push-out {v}", {"contact.push_out": v}) for v in (0, 0.2)]
