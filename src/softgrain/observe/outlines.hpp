@@ -15,4 +15,11 @@ double total_area(std::span<const Vec<2>> outline, std::span<const int> begin);
 /// once however many contact points it has.
 double coordination_number(std::vector<std::pair<int, int>> pairs, int grains);
 
+/// Outline of a grain made of disks, counter-clockwise: what a probe disk of radius `probe` [m] that rolls
+/// round the grain can touch. Notches narrower than the probe are bridged by straight lines, pores inside do
+/// not exist; a probe of half a primary's size sees dents of the size of a primary and more. If the grain has
+/// broken, the outline is that of the piece that reaches lowest.
+std::vector<Vec<2>> disk_outline(std::span<const Vec<2>> position, std::span<const double> radius,
+                                 double probe);
+
 }  // namespace softgrain

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "softgrain/math/vec.hpp"
+#include "softgrain/observe/contact_network.hpp"
 
 namespace softgrain {
 
@@ -18,5 +19,15 @@ struct BranchForce {
 ///   p_i = -(1/2 A_i) sum_c f_c . l_c  [Pa], with f_c the force on i and l_c from its centre to where the
 ///   force acts.
 std::vector<double> virial_pressure(std::span<const BranchForce> forces, std::span<const double> area);
+
+/// Stress of a packing in a box of the given area [m^2] (Love-Weber, theory (55)), compression positive:
+///   sigma = (1/V) sum_c f_c (x) l_c  [Pa],
+/// with f_c the force of a on b and l_c from the centre [m] of grain a to that of grain b, or to the point of
+/// contact with a wall. At rest it is the stress on the walls.
+Mat<2> contact_stress(std::span<const ContactPoint> contacts, std::span<const Vec<2>> centre, double area);
+
+/// Stress of the motion [Pa], compression positive: (1/V) sum m (v - v_mean) (x) (v - v_mean), for any bodies
+/// with masses [kg/m] and velocities [m/s].
+Mat<2> kinetic_stress(std::span<const double> mass, std::span<const Vec<2>> velocity, double area);
 
 }  // namespace softgrain

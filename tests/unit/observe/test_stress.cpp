@@ -46,3 +46,42 @@ TEST_CASE("a disk between four walls has the mean of the two stresses") {
     f = {.a = -1, .b = 0, .force = -f.force, .branch_a = {}, .branch_b = f.branch_a};
   CHECK(virial_pressure(forces, std::vector<double>{L * L})[0] == (f_x / L + f_y / L) / 2);
 }
+
+TEST_CASE("a box of disks in a square packing has the walls' stress") {
+  // n x n disks of radius 1; each column carries f_y, each row f_x, from wall to wall
+  constexpr int n = 5;
+  constexpr double f_x = 3, f_y = 7, side = 2 * n;
+  const auto grain = [](int column, int row) { return n * row + column; };
+  std::vector<Vec<2>> centre(n * n);
+  std::vector<ContactPoint> contacts;
+  const auto add = [&](int a, int b, const Vec<2>& n_ab, double force) {
+    contacts.push_back({.a = a, .b = b, .force = force * n_ab, .normal = n_ab, .position = centre[a] + n_ab});
+  };
+  for (int k = 0; k < n; ++k)
+    for (int i = 0; i < n; ++i) centre[grain(i, k)] = {2.0 * i + 1, 2.0 * k + 1};
+  for (int k = 0; k < n; ++k) {
+    for (int i = 0; i + 1 < n; ++i) {
+      add(grain(i + 1, k), grain(i, k), {-1, 0}, f_x);
+      add(grain(k, i), grain(k, i + 1), {0, 1}, f_y);
+    }
+    add(grain(0, k), wall_index(0), {-1, 0}, f_x);
+    add(grain(n - 1, k), wall_index(1), {1, 0}, f_x);
+    add(grain(k, 0), wall_index(2), {0, -1}, f_y);
+    add(grain(k, n - 1), wall_index(3), {0, 1}, f_y);
+  }
+  const Mat<2> sigma = contact_stress(contacts, centre, side * side);
+  CHECK(sigma(0, 0) == doctest::Approx(n * f_x / side));  // force on a wall over its length
+  CHECK(sigma(1, 1) == doctest::Approx(n * f_y / side));
+  CHECK(sigma(0, 1) == 0);
+  CHECK(sigma(1, 0) == 0);
+}
+
+TEST_CASE("a gas has the pressure of its motion, and a stream as a whole has none") {
+  // p = N m <v_x^2>/V for velocities +-v about a stream
+  const std::vector<double> mass{2, 2, 2, 2};
+  const std::vector<Vec<2>> velocity{{10 + 3, 5}, {10 - 3, 5}, {10, 5 + 1}, {10, 5 - 1}};
+  const Mat<2> sigma = kinetic_stress(mass, velocity, 4);
+  CHECK(sigma(0, 0) == 2 * 2 * 9.0 / 4);
+  CHECK(sigma(1, 1) == 2 * 2 * 1.0 / 4);
+  CHECK(sigma(0, 1) == 0);
+}

@@ -1,0 +1,87 @@
+#include "softgrain/observe/contact_network.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace softgrain {
+namespace {
+
+ContactPoint seen_from_first(const ContactPoint& p) {
+  if (p.b < 0 || p.a < p.b) return p;
+  return {
+      .a = p.b, .b = p.a, .force = -p.force, .normal = -p.normal, .position = p.position, .length = p.length};
+}
+
+void add(GrainPair& pair, const ContactPoint& point) {
+  const double f_n = dot(point.force, point.normal);
+  ++pair.points;
+  pair.normal_force += f_n;
+  pair.force += point.force;
+  pair.normal += f_n * point.normal;
+  pair.length += point.length;
+}
+
+}  // namespace
+
+ContactNetwork contact_network(std::span<const ContactPoint> points, int grains) {
+  std::vector<ContactPoint> sorted;
+  for (const ContactPoint& point : points)
+    if (point.a != point.b && dot(point.force, point.normal) > 0) sorted.push_back(seen_from_first(point));
+  std::stable_sort(sorted.begin(), sorted.end(), [](const ContactPoint& p, const ContactPoint& q) {
+    return std::pair(p.a, p.b) < std::pair(q.a, q.b);
+  });
+  ContactNetwork network{.grains = grains, .pairs = {}, .walls = {}};
+  for (const ContactPoint& point : sorted) {
+    std::vector<GrainPair>& list = point.b < 0 ? network.walls : network.pairs;
+    if (list.empty() || list.back().a != point.a || list.back().b != point.b)
+      list.push_back({.a = point.a, .b = point.b, .points = 0, .normal_force = 0, .force = {}, .normal = {}});
+    add(list.back(), point);
+  }
+  for (std::vector<GrainPair>* list : {&network.pairs, &network.walls})
+    for (GrainPair& pair : *list) {
+      const double size = norm(pair.normal);
+      if (size > 0) pair.normal *= 1 / size;
+    }
+  return network;
+}
+
+Coordination coordination(const ContactNetwork& network) {
+  Coordination result;
+  if (network.grains == 0) return result;
+  std::vector<int> rattler(network.grains, 0);
+  int held = network.grains, pairs_held = 0;
+  for (bool found = true; found;) {
+    found = false;
+    std::vector<int> contacts(network.grains, 0);
+    pairs_held = 0;
+    for (const GrainPair& pair : network.walls) ++contacts[pair.a];
+    for (const GrainPair& pair : network.pairs) {
+      if (rattler[pair.a] || rattler[pair.b]) continue;
+      ++contacts[pair.a], ++contacts[pair.b];
+      ++pairs_held;
+    }
+    for (int g = 0; g < network.grains; ++g) {
+      if (rattler[g] || contacts[g] >= 2) continue;
+      rattler[g] = 1;
+      --held;
+      found = true;
+    }
+  }
+  result.z = 2.0 * static_cast<double>(network.pairs.size()) / network.grains;
+  result.z_no_rattlers = held > 0 ? 2.0 * pairs_held / held : 0;
+  result.rattlers = 1 - static_cast<double>(held) / network.grains;
+  return result;
+}
+
+double mean_sides(const ContactNetwork& network, std::span<const double> perimeter, double least_share) {
+  if (network.grains == 0) return 0;
+  int sides = 0;
+  const auto is_side = [&](const GrainPair& pair, int grain) {
+    return pair.length >= least_share * perimeter[grain] ? 1 : 0;
+  };
+  for (const GrainPair& pair : network.pairs) sides += is_side(pair, pair.a) + is_side(pair, pair.b);
+  for (const GrainPair& pair : network.walls) sides += is_side(pair, pair.a);
+  return static_cast<double>(sides) / network.grains;
+}
+
+}  // namespace softgrain
