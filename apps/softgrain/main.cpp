@@ -33,6 +33,7 @@ void add_verbs(CLI::App& app) {
   add_check_verb(app);
   add_run_verb(app);
   add_plot_verb(app);
+  add_report_verb(app);
   add_info_verb(app);
   add_solve_verb(app);
   add_schema_verb(app);

@@ -10,6 +10,7 @@
 #include "softgrain/experiment/create.hpp"
 #include "softgrain/io/case_file.hpp"
 #include "softgrain/io/case_text.hpp"
+#include "softgrain/io/report_page.hpp"
 #include "softgrain/io/run_recorder.hpp"
 #include "softgrain/io/units.hpp"
 #include "terminal.hpp"
@@ -63,10 +64,12 @@ double seconds_of(const std::string& text) {
 }
 
 /// What the user reads when the program is back, and what to do next.
-std::string closing_words(const RunRecord& record, const std::string& directory) {
+std::string closing_words(const RunRecord& record, const RunPaths& paths, bool has_page) {
   const auto reached = verdict(record.report, record.tolerance);
+  const std::string directory = paths.root.string();
+  const auto page = has_page ? fmt::format("look at {} in a browser, or ", paths.report_file().string()) : "";
   if (record.state == "done")
-    return fmt::format("{}\nresults in {}; next: softgrain plot {}\n", reached, directory, directory);
+    return fmt::format("{}\nresults in {}; next: {}softgrain plot {}\n", reached, directory, page, directory);
   return fmt::format("stopped by {} at {:.1f} %: {}\nresults in {}; go on with: softgrain resume {}\n",
                      record.message, 100 * record.progress, reached, directory, directory);
 }
@@ -90,7 +93,10 @@ void carry_out(const RunRequest& request, const RunDirectory& directory, const R
     if (!options.quiet) progress.message("results go to " + directory.paths().root.string());
     outcome = record_run(*simulation, directory, request, progress, signals);
   }
-  if (!options.quiet) print_result(closing_words(outcome.record, directory.paths().root.string()));
+  const RunPaths& paths = directory.paths();
+  const bool page = request.the_case.output.report && outcome.record.state == "done";
+  if (page) write_report({paths.root}, paths.report_file());
+  if (!options.quiet) print_result(closing_words(outcome.record, paths, page));
   if (outcome.exit_code != 0) throw ExitCode{outcome.exit_code};
 }
 

@@ -74,6 +74,7 @@ struct Case {
     int samples = 600;   ///< rows of series.csv, evenly over the run
     int snapshots = 24;  ///< restart points, evenly over the run
     bool vtk = true;     ///< .vtp files for ParaView beside the snapshots
+    bool report = true;  ///< report.html when the run is done
   } output;
 };
 

@@ -103,7 +103,7 @@ void RunDirectory::lock() {
 
 void RunDirectory::clear() const {
   for (const fs::path& file : {paths_.case_file(), paths_.run_file(), paths_.series_file(), paths_.log_file(),
-                               paths_.collection_file()})
+                               paths_.collection_file(), paths_.report_file()})
     fs::remove(file);
   for (const SnapshotFile& snapshot : list_snapshots(paths_)) fs::remove(snapshot.path);
   for (const fs::path& file : entries(paths_.snapshot_folder()))

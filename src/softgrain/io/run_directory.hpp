@@ -16,6 +16,7 @@ struct RunPaths {
   std::filesystem::path series_file() const { return root / "series.csv"; }
   std::filesystem::path log_file() const { return root / "log.txt"; }
   std::filesystem::path collection_file() const { return root / "run.pvd"; }
+  std::filesystem::path report_file() const { return root / "report.html"; }
   std::filesystem::path lock_file() const { return root / ".lock"; }
   std::filesystem::path snapshot_folder() const { return root / "snap"; }
   std::filesystem::path vtk_folder() const { return root / "vtk"; }

@@ -1,0 +1,88 @@
+#include "softgrain/io/report_codec.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "softgrain/core/error.hpp"
+
+namespace softgrain {
+
+namespace {
+
+std::uint32_t zigzag(std::uint32_t difference, int bytes) {
+  const int unused = 32 - 8 * bytes;
+  const auto d = static_cast<std::int32_t>(difference << unused) >> unused;  // its sign
+  const std::uint32_t folded = (static_cast<std::uint32_t>(d) << 1) ^ static_cast<std::uint32_t>(d >> 31);
+  return folded << unused >> unused;
+}
+
+}  // namespace
+
+EncodedArray encode_reals(std::span<const float> values, std::size_t stride, int bits) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double value : values)
+    if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
+  if (!(low <= high)) low = high = 0;
+  const double largest = std::exp2(bits) - 1, step = (high - low) / largest;
+  std::vector<std::uint32_t> q(values.size(), 0);
+  for (std::size_t i = 0; i < q.size() && step > 0; ++i)
+    if (std::isfinite(values[i])) q[i] = static_cast<std::uint32_t>(std::lround((values[i] - low) / step));
+  const int bytes = bits > 8 ? 2 : 1;
+  return {low, step, bytes, q.size(), encode_whole(q, stride, bytes)};
+}
+
+EncodedArray encode_indices(std::span<const float> values, std::size_t stride) {
+  const std::vector<std::uint32_t> q(values.begin(), values.end());
+  const std::uint32_t largest = q.empty() ? 0 : *std::max_element(q.begin(), q.end());
+  const int bytes = largest < 256 ? 1 : largest < 65536 ? 2 : 4;
+  return {0, 1, bytes, q.size(), encode_whole(q, stride, bytes)};
+}
+
+std::string encode_whole(std::span<const std::uint32_t> q, std::size_t stride, int bytes) {
+  std::string planes(q.size() * static_cast<std::size_t>(bytes), '\0');
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const std::uint32_t code = zigzag(q[i] - (i < stride ? 0 : q[i - stride]), bytes);
+    for (int plane = 0; plane < bytes; ++plane)
+      planes[static_cast<std::size_t>(plane) * q.size() + i] = static_cast<char>(code >> 8 * plane);
+  }
+  return planes;
+}
+
+std::string gzip(std::string_view bytes) {
+  constexpr int window_with_gzip_header = 15 + 16, memory = 8;
+  z_stream stream{};
+  if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, window_with_gzip_header, memory,
+                   Z_DEFAULT_STRATEGY) != Z_OK)
+    throw IoError("zlib could not begin to compress a report");
+  std::string packed(deflateBound(&stream, bytes.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  const bool fits =
+      bytes.size() <= std::numeric_limits<uInt>::max() && packed.size() <= std::numeric_limits<uInt>::max();
+  const bool ok = fits && deflate(&stream, Z_FINISH) == Z_STREAM_END;
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  if (!ok) throw IoError("zlib could not compress a report");
+  return packed;
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t there = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (k < there ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= there ? digits[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+}  // namespace softgrain

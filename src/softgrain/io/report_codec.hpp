@@ -1,0 +1,37 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace softgrain {
+
+/// Numbers as the page reads them: value = low + step q, with whole q from 0, each in `bytes` bytes.
+struct EncodedArray {
+  double low = 0;
+  double step = 0;
+  int bytes = 2;          ///< 1, 2 or 4
+  std::size_t count = 0;  ///< of numbers
+  std::string planes;     ///< count * bytes bytes, see encode_whole
+};
+
+/// Reals to q of `bits` bits (1 to 16): the smallest value is q = 0, the largest 2^bits - 1. What is not
+/// finite becomes the smallest. Each differs from the value `stride` places before it only a little.
+EncodedArray encode_reals(std::span<const float> values, std::size_t stride, int bits);
+
+/// Whole numbers from 0 that come as floats, exactly (below 2^24).
+EncodedArray encode_indices(std::span<const float> values, std::size_t stride);
+
+/// The bytes of q, so that gzip finds them short: d_i = q_i - q_(i - stride) modulo 2^(8 bytes), as zigzag
+/// (0, -1, 1, -2, ... become 0, 1, 2, 3, ...), then the lowest byte of all, the next byte of all, and so on.
+std::string encode_whole(std::span<const std::uint32_t> q, std::size_t stride, int bytes);
+
+/// RFC 1952. Raises IoError when zlib fails.
+std::string gzip(std::string_view bytes);
+
+/// RFC 4648, with padding, in one line.
+std::string base64(std::string_view bytes);
+
+}  // namespace softgrain

@@ -1,0 +1,157 @@
+#include "softgrain/io/report_frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "softgrain/io/report_chains.hpp"
+
+namespace softgrain {
+
+namespace {
+
+using Column = std::vector<float>;
+
+/// Column `k` of an array, as floats.
+Column column_of(const Array& array, std::size_t k = 0) {
+  Column column;
+  std::visit(
+      [&](const auto& values) {
+        for (std::size_t i = k; i < values.size(); i += array.columns)
+          column.push_back(static_cast<float>(values[i]));
+      },
+      array.values);
+  return column;
+}
+
+void add_positions(ReportFrame& frame, const std::map<std::string, Array>& arrays, const std::string& owner) {
+  const auto position = arrays.find("position");
+  if (position == arrays.end()) return;
+  frame.columns[owner + ".x"] = column_of(position->second, 0);
+  frame.columns[owner + ".y"] = column_of(position->second, 1);
+}
+
+void add_walls(ReportFrame& frame, const Scene& scene) {
+  const char* const names[] = {"wall.x0", "wall.y0", "wall.x1", "wall.y1"};
+  const Array walls{4, scene.wall_segments};
+  for (std::size_t k = 0; k < 4; ++k) frame.columns[names[k]] = column_of(walls, k);
+}
+
+std::size_t grain_count(const Column& grain_of) {
+  return grain_of.empty() ? 0
+                          : 1 + static_cast<std::size_t>(*std::max_element(grain_of.begin(), grain_of.end()));
+}
+
+/// Area and centroid of each outline, and the outline seen from there.
+void add_outlines(ReportFrame& frame, const Scene& scene) {
+  const auto grain = scene.outlines.find("grain");
+  if (grain == scene.outlines.end()) return;
+  add_positions(frame, scene.outlines, "outline");
+  auto& columns = frame.columns;
+  const Column& owner = columns["outline.grain"] = column_of(grain->second);
+  Column &x = columns["outline.x"], &y = columns["outline.y"];
+  const std::size_t grains = grain_count(owner);
+  Column &area = columns["grain.area"], &grain_x = columns["grain.x"], &grain_y = columns["grain.y"];
+  for (Column* column : {&area, &grain_x, &grain_y}) column->assign(grains, 0);
+  for (std::size_t begin = 0, end; begin < owner.size(); begin = end) {
+    for (end = begin; end < owner.size() && owner[end] == owner[begin];) ++end;
+    // A = 1/2 sum (x_i y_j - x_j y_i), A c = 1/6 sum (x_i + x_j)(x_i y_j - x_j y_i), j = i + 1, seen from
+    // vertex 0
+    const double x0 = x[begin], y0 = y[begin];
+    double twice_area = 0, moment_x = 0, moment_y = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t j = i + 1 < end ? i + 1 : begin;
+      const double xi = x[i] - x0, yi = y[i] - y0, xj = x[j] - x0, yj = y[j] - y0;
+      const double cross = xi * yj - xj * yi;
+      twice_area += cross, moment_x += (xi + xj) * cross, moment_y += (yi + yj) * cross;
+    }
+    const auto g = static_cast<std::size_t>(owner[begin]);
+    area[g] = static_cast<float>(std::fabs(twice_area) / 2);
+    grain_x[g] = static_cast<float>(x0 + (twice_area != 0 ? moment_x / (3 * twice_area) : 0));
+    grain_y[g] = static_cast<float>(y0 + (twice_area != 0 ? moment_y / (3 * twice_area) : 0));
+    for (std::size_t i = begin; i < end; ++i) x[i] -= grain_x[g], y[i] -= grain_y[g];
+  }
+}
+
+/// Means over a grain's particles, weighted by their areas: pressure, and the centre where there is no
+/// outline.
+void add_grain_means(ReportFrame& frame) {
+  auto& columns = frame.columns;
+  if (!columns.contains("particle.grain") || !columns.contains("particle.radius")) return;
+  const Column &grain = columns["particle.grain"], &radius = columns["particle.radius"];
+  const auto mean = [&](const std::string& name) {
+    std::vector<double> sum(grain_count(grain), 0), weight = sum;
+    const Column& values = columns["particle." + name];
+    for (std::size_t i = 0; i < std::min(values.size(), grain.size()); ++i) {
+      const double a = double{radius[i]} * double{radius[i]};
+      sum[static_cast<std::size_t>(grain[i])] += a * double{values[i]};
+      weight[static_cast<std::size_t>(grain[i])] += a;
+    }
+    for (std::size_t g = 0; g < sum.size(); ++g) sum[g] /= std::max(weight[g], 1e-300);
+    return Column(sum.begin(), sum.end());
+  };
+  if (columns.contains("particle.pressure")) columns["grain.pressure"] = mean("pressure");
+  if (columns.contains("grain.x")) return;
+  columns["grain.x"] = mean("x");
+  columns["grain.y"] = mean("y");
+}
+
+void add_contacts(ReportFrame& frame, const Scene& scene) {
+  std::vector<Chain> chains;
+  const auto pair = scene.contacts.find("pair"), force = scene.contacts.find("force");
+  if (pair != scene.contacts.end() && force != scene.contacts.end()) {
+    const Column a = column_of(pair->second, 0), b = column_of(pair->second, 1), f = column_of(force->second);
+    const auto particles = static_cast<float>(frame.columns["particle.x"].size());
+    for (std::size_t c = 0; c < std::min({a.size(), b.size(), f.size()}); ++c)
+      if (f[c] > 0 && std::min(a[c], b[c]) >= 0 && std::max(a[c], b[c]) < particles)
+        chains.push_back({static_cast<int>(a[c]), static_cast<int>(b[c]), double{f[c]}});
+  } else {
+    frame.contacts_of_grains = true;
+    chains = chains_between_outlines(scene);
+  }
+  std::sort(chains.begin(), chains.end(),
+            [](const Chain& c, const Chain& d) { return std::pair(c.a, c.b) < std::pair(d.a, d.b); });
+  auto& columns = frame.columns;
+  Column &a = columns["contact.a"], &b = columns["contact.b"], &f = columns["contact.force"];
+  for (const Chain& chain : chains) {
+    a.push_back(static_cast<float>(chain.a));
+    b.push_back(static_cast<float>(chain.b));
+    f.push_back(static_cast<float>(chain.force));
+  }
+}
+
+}  // namespace
+
+ReportFrame frame_of(const Scene& scene) {
+  ReportFrame frame;
+  add_positions(frame, scene.particles, "particle");
+  for (const char* name : {"radius", "pressure", "coordination", "grain"})
+    if (const auto field = scene.particles.find(name); field != scene.particles.end())
+      frame.columns[std::string("particle.") + name] = column_of(field->second);
+  add_walls(frame, scene);
+  add_outlines(frame, scene);
+  add_grain_means(frame);
+  add_contacts(frame, scene);
+  return frame;
+}
+
+void merge_particles(ReportFrame& frame, std::size_t size) {
+  const Column grain = frame.columns["particle.grain"];
+  if (size < 2 || grain.empty() || grain.size() % size != 0) return;
+  for (std::size_t i = 0; i < grain.size(); i += size)
+    if (grain[i] != grain[i + size - 1]) return;
+  for (auto& [name, column] : frame.columns) {
+    if (!name.starts_with("particle.") || column.size() != grain.size()) continue;
+    Column merged;
+    for (std::size_t i = 0; i < column.size(); i += size) {
+      double sum = 0;
+      for (std::size_t k = i; k < i + size; ++k) sum += double{column[k]};
+      merged.push_back(static_cast<float>(sum / static_cast<double>(size)));
+    }
+    column = std::move(merged);
+  }
+  // the group covers the area of its members
+  for (float& radius : frame.columns["particle.radius"]) radius *= std::sqrt(static_cast<float>(size));
+}
+
+}  // namespace softgrain
