@@ -31,6 +31,9 @@ struct Case {
     double poisson_ratio = 0.45;          ///< nu [-]
     int cells = 16;                       ///< along a side of the inner square: 14 cells^2 points in a grain
     std::string integrator = "implicit";  ///< or "explicit"
+    std::string formulation = "total_lagrangian";  ///< or "updated_lagrangian", explicit, for comparison
+    std::string shape_functions = "gimp";          ///< updated_lagrangian: or "bilinear", "bspline"
+    std::string contact_on = "outline";            ///< updated_lagrangian: or "grid_nodes"
     double time_step = 0;  ///< dt [s]; 0: the plate moves 1 % of the smallest R (implicit), stable (explicit)
     double tolerance = 1e-4;  ///< largest last correction of Newton's method, over the mean grain radius
   } mpm;

@@ -6,6 +6,7 @@
 #include "softgrain/experiment/diametral_path.hpp"
 #include "softgrain/experiment/mpm_simulation.hpp"
 #include "softgrain/experiment/sample.hpp"
+#include "softgrain/experiment/updated_lagrangian_simulation.hpp"
 
 namespace softgrain {
 namespace {
@@ -61,6 +62,7 @@ std::unique_ptr<PlatePath> path_of(const Case& c, const std::vector<Wall<2>>& wa
 }  // namespace
 
 std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
+  if (c.mpm.formulation == "updated_lagrangian") return std::make_unique<UpdatedLagrangianSimulation>(c);
   MpmSetup setup = setup_of(c);
   double smallest = setup.grains.front().radius;
   for (const GrainPlacement& grain : setup.grains) smallest = std::min(smallest, grain.radius);

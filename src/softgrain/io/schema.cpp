@@ -54,6 +54,12 @@ std::vector<Key> all_keys() {
       KEY(mpm.poisson_ratio, "", between(-1, 0.5), "Poisson's ratio nu; from 0.49 on cells change volume in the mean"),
       KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points"),
       KEY(mpm.integrator, "", one_of({"implicit", "explicit"}), "backward Euler, or symplectic Euler with lumped masses"),
+      KEY(mpm.formulation, "", one_of({"total_lagrangian", "updated_lagrangian"}),
+          "total_lagrangian: on a grid that fits the grain; updated_lagrangian: points move through a lattice that is "
+          "reset in each step, always explicit, for comparison (diametral)"),
+      KEY(mpm.shape_functions, "", one_of({"bilinear", "gimp", "bspline"}), "of the lattice (updated_lagrangian)"),
+      KEY(mpm.contact_on, "", one_of({"outline", "grid_nodes"}),
+          "where contact acts; total_lagrangian: on the outline only"),
       KEY(mpm.time_step, "us", at_least(0),
           "time step; 0: the plate moves 1 % of the smallest radius (implicit), or the stable step (explicit)"),
       KEY(mpm.tolerance, "", positive(), "largest last correction of Newton's method over the mean grain radius"),
@@ -166,6 +172,19 @@ std::string no_such_experiment(const Case& c) {
                      c.experiment.loading);
 }
 
+std::string formulation_cannot(const Case& c) {
+  const bool updated = c.mpm.formulation == "updated_lagrangian";
+  if (c.experiment.model != "mpm") return "";
+  if (updated && c.experiment.loading != "diametral")
+    return fmt::format(
+        "mpm.formulation \"updated_lagrangian\" needs experiment.loading \"diametral\", not \"{}\"",
+        c.experiment.loading);
+  if (!updated && c.mpm.contact_on != "outline")
+    return fmt::format("mpm.contact_on \"{}\" needs mpm.formulation \"updated_lagrangian\"",
+                       c.mpm.contact_on);
+  return "";
+}
+
 }  // namespace
 
 bool Range::contains(double value) const {
@@ -202,6 +221,7 @@ const std::vector<Relation>& case_relations() {
       {{"sample.smallest_diameter", "sample.largest_diameter"}, diameters_reversed},
       {{"time.step", "mpm.time_step", "loading.wall_velocity", "loading.max_strain", "grain.radius"},
        too_many_steps},
+      {{"mpm.formulation", "mpm.contact_on", "experiment.loading"}, formulation_cannot},
       {{"experiment.loading", "experiment.model"}, no_such_experiment},
   };
   return relations;

@@ -24,7 +24,7 @@ struct UpdatedLagrangianOptions {
       0.01;                ///< of a point's velocity that is taken from the nodes in a step (0: FLIP, 1: PIC)
   double wall_reach = -1;  ///< grid_nodes: a wall acts on nodes nearer than this [cells]; below 0: as far as
                            ///< if it were filled with points like the grains
-  SolverOptions solver{.max_sweeps = 200, .tolerance = 1e-8};  ///< NLGS; in units of mean radius / dt
+  SolverOptions solver{.max_sweeps = 500, .tolerance = 1e-7};  ///< NLGS; in units of mean radius / dt
   double friction = 0;
   double wall_friction = 0;
   Vec<2> gravity{};  ///< [m/s^2]

@@ -1,0 +1,187 @@
+#include "softgrain/experiment/updated_lagrangian_simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/experiment/arrays.hpp"
+#include "softgrain/geometry/polygon.hpp"
+#include "softgrain/math/tensor.hpp"
+
+namespace softgrain {
+namespace {
+
+enum WallIndex : int { bottom, top };
+
+ShapeFunction shape_of(const std::string& name) {
+  if (name == "bilinear") return ShapeFunction::bilinear;
+  if (name == "gimp") return ShapeFunction::gimp;
+  require(name == "bspline", "mpm.shape_functions must be 'bilinear', 'gimp' or 'bspline', got '{}'", name);
+  return ShapeFunction::bspline;
+}
+
+ContactOn contact_of(const std::string& name) {
+  if (name == "outline") return ContactOn::outline;
+  require(name == "grid_nodes", "mpm.contact_on must be 'outline' or 'grid_nodes', got '{}'", name);
+  return ContactOn::grid_nodes;
+}
+
+UpdatedLagrangianDynamics dynamics_of(const Case& c) {
+  require(c.experiment.loading == "diametral",
+          "mpm.formulation 'updated_lagrangian' needs experiment.loading 'diametral', got '{}'",
+          c.experiment.loading);
+  const double R = c.grain.radius;
+  const double cell = R * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;  // 14 cells^2 points, 4 to a cell
+  PointGrain grain = disk_of_points(R, {}, cell, 8 * c.mpm.cells);
+  double reach = 0;  // the outline is symmetric about both axes
+  for (const Vec<2>& x : grain.outline) reach = std::max(reach, x[1]);
+  return {{std::move(grain)},
+          {{.point = {0, -reach}, .normal = {0, 1}, .velocity = {}},
+           {.point = {0, reach}, .normal = {0, -1}, .velocity = {}}},
+          make_law(c.mpm.law, c.mpm.young_modulus, c.mpm.poisson_ratio),
+          c.grain.density,
+          {.shape = shape_of(c.mpm.shape_functions),
+           .contact_on = contact_of(c.mpm.contact_on),
+           .cell = cell,
+           .friction = c.contact.friction,
+           .wall_friction = c.contact.wall_friction}};
+}
+
+double time_step_of(const Case& c, const UpdatedLagrangianDynamics& dynamics) {
+  if (c.mpm.time_step > 0) return c.mpm.time_step;
+  return stable_time_step(dynamics.law, dynamics.density, dynamics.options.cell);
+}
+
+/// Smallest and largest x of an outline [m].
+std::pair<double, double> extent(const PointGrain& grain) {
+  const auto [left, right] = std::minmax_element(grain.outline.begin(), grain.outline.end(),
+                                                 [](const auto& a, const auto& b) { return a[0] < b[0]; });
+  return {(*left)[0], (*right)[0]};
+}
+
+std::vector<Vec<4>> components(std::span<const Mat<2>> tensors) {
+  std::vector<Vec<4>> rows;
+  for (const Mat<2>& tensor : tensors) rows.push_back({tensor.c});
+  return rows;
+}
+
+}  // namespace
+
+UpdatedLagrangianSimulation::UpdatedLagrangianSimulation(const Case& c)
+    : dynamics_(dynamics_of(c)),
+      dt_(time_step_of(c, dynamics_)),
+      path_(c.loading, c.grain.radius, dt_),
+      height_start_(plate_distance()) {}
+
+double UpdatedLagrangianSimulation::plate_distance() const {
+  return dynamics_.walls[top].point[1] - dynamics_.walls[bottom].point[1];
+}
+
+StepReport UpdatedLagrangianSimulation::step() {
+  dynamics_.walls[top].velocity = {0, path_.plate_velocity(step_)};
+  const SoftStepReport soft = dynamics_.step(dt_);
+  ++step_;
+  sums_.force_bottom -= dynamics_.wall_impulse(bottom)[1];
+  sums_.force_top += dynamics_.wall_impulse(top)[1];
+  sums_.duration += dt_;
+  sums_.wall_work -= dot(dynamics_.wall_impulse(top), dynamics_.walls[top].velocity);
+  return {.contacts = soft.contacts,
+          .sweeps = soft.sweeps,
+          .residual_mean = soft.residual,
+          .residual_max = soft.residual,
+          .overlap_mean = 0,
+          .overlap_max = soft.penetration_max,
+          .converged = soft.converged};
+}
+
+std::vector<Quantity> UpdatedLagrangianSimulation::observe() {
+  const auto [left, right] = extent(grain());
+  double least_J = std::numeric_limits<double>::infinity();
+  for (const Mat<2>& F : grain().F) least_J = std::min(least_J, determinant(F));
+  const auto contacts = std::count_if(dynamics_.impulse.begin(), dynamics_.impulse.end(),
+                                      [](const auto& p) { return p[0] > 0; });
+  const double duration = sums_.duration > 0 ? sums_.duration : dt_;
+  const double force_bottom = sums_.force_bottom / duration, force_top = sums_.force_top / duration;
+  const double kinetic = grain().kinetic_energy(dynamics_.density), elastic = dynamics_.elastic_energy();
+  sums_.force_bottom = sums_.force_top = sums_.duration = 0;
+  return {
+      {"step", "", static_cast<double>(step_)},
+      {"time", "s", time()},
+      {"strain", "", path_.strain(height_start_, plate_distance())},
+      {"leg", "", static_cast<double>(path_.leg(std::max<std::int64_t>(step_ - 1, 0)))},
+      {"wall_height", "m", plate_distance()},
+      {"width", "m", right - left},
+      {"stress_bottom", "Pa", force_bottom / (right - left)},
+      {"stress_top", "Pa", force_top / (right - left)},
+      {"force_bottom", "N/m", force_bottom},
+      {"force_top", "N/m", force_top},
+      {"contacts", "", static_cast<double>(contacts)},
+      {"area_ratio", "", polygon_area(grain().outline) / grain().area()},
+      {"least_J", "", least_J},
+      {"kinetic_energy", "J/m", kinetic},
+      {"elastic_energy", "J/m", elastic},
+      {"wall_work", "J/m", sums_.wall_work},
+      {"dissipation", "J/m", sums_.wall_work - kinetic - elastic},
+  };
+}
+
+Scene UpdatedLagrangianSimulation::scene() const {
+  std::vector<double> radius, pressure, dilatation;
+  std::vector<Mat<2>> stress;
+  for (int p = 0; p < grain().points(); ++p) {
+    dilatation.push_back(determinant(grain().F[p]));
+    radius.push_back(std::sqrt(dilatation.back() * grain().volume[p] / std::numbers::pi));
+    stress.push_back(dynamics_.stress(0, p));
+    pressure.push_back(-trace(stress.back()) / 2);
+  }
+  Scene scene;
+  scene.particles["position"] = to_array<2>(grain().position);
+  scene.particles["radius"] = {1, std::move(radius)};
+  scene.particles["pressure"] = {1, std::move(pressure)};
+  scene.particles["J"] = {1, std::move(dilatation)};
+  scene.particles["stress"] = to_array<4>(components(stress));
+  scene.particles["grain"] = {1, std::vector<std::int64_t>(grain().position.size(), 0)};
+  scene.outlines["position"] = to_array<2>(grain().outline);
+  scene.outlines["grain"] = {1, std::vector<std::int64_t>(grain().outline.size(), 0)};
+  const auto [left, right] = extent(grain());
+  const double margin = 0.1 * (right - left);
+  for (const WallIndex w : {bottom, top}) {
+    const double y = dynamics_.walls[w].point[1];
+    scene.wall_segments.insert(scene.wall_segments.end(), {left - margin, y, right + margin, y});
+  }
+  return scene;
+}
+
+Checkpoint UpdatedLagrangianSimulation::checkpoint() const {
+  Checkpoint state{.step = step_, .time = time(), .arrays = {}};
+  state.arrays["position"] = to_array<2>(grain().position);
+  state.arrays["velocity"] = to_array<2>(grain().velocity);
+  state.arrays["deformation_gradient"] = to_array<4>(components(grain().F));
+  state.arrays["outline"] = to_array<2>(grain().outline);
+  const std::vector<Vec<2>> points{dynamics_.walls[bottom].point, dynamics_.walls[top].point};
+  state.arrays["wall_point"] = to_array<2>(points);
+  state.arrays["sums"] = {
+      1, std::vector<double>{sums_.force_bottom, sums_.force_top, sums_.duration, sums_.wall_work}};
+  return state;
+}
+
+void UpdatedLagrangianSimulation::restore(const Checkpoint& state) {
+  PointGrain& grain = dynamics_.grains.front();
+  std::vector<Vec<4>> F(grain.F.size());
+  std::vector<Vec<2>> wall_point(2);
+  std::vector<Vec<1>> sums(4);
+  from_array<2>(state, "position", grain.position);
+  from_array<2>(state, "velocity", grain.velocity);
+  from_array<4>(state, "deformation_gradient", F);
+  from_array<2>(state, "outline", grain.outline);
+  from_array<2>(state, "wall_point", wall_point);
+  from_array<1>(state, "sums", sums);
+  for (std::size_t p = 0; p < F.size(); ++p) grain.F[p] = {F[p].c};
+  for (const WallIndex w : {bottom, top}) dynamics_.walls[w].point = wall_point[w];
+  sums_ = {sums[0][0], sums[1][0], sums[2][0], sums[3][0]};
+  step_ = state.step;
+}
+
+}  // namespace softgrain

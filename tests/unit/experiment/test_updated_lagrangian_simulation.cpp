@@ -1,0 +1,114 @@
+#include "softgrain/experiment/updated_lagrangian_simulation.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/experiment/create.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+Case one_grain() {
+  Case c;
+  c.experiment = {.loading = "diametral", .model = "mpm"};
+  c.mpm.cells = 4;
+  c.mpm.formulation = "updated_lagrangian";
+  c.contact.wall_friction = 0.2;
+  c.loading.wall_velocity = 2;
+  c.loading.max_strain = 0.1;
+  c.loading.unload_at = {0.05};
+  c.loading.unload_by = 0.01;
+  return c;
+}
+
+double value_of(const std::vector<Quantity>& row, std::string_view name) {
+  const auto found = std::ranges::find(row, name, &Quantity::name);
+  REQUIRE(found != row.end());
+  return found->value;
+}
+
+void advance(Simulation& simulation, std::int64_t steps) {
+  while (steps-- > 0 && !simulation.finished()) simulation.step();
+}
+
+}  // namespace
+
+TEST_CASE("an updated-Lagrangian run that goes on from a checkpoint has the bits of one that never stopped") {
+  for (const char* contact_on : {"outline", "grid_nodes"}) {
+    CAPTURE(contact_on);
+    Case c = one_grain();
+    c.mpm.contact_on = contact_on;
+    const auto whole = create_simulation(c);
+    advance(*whole, whole->steps_planned() / 2);
+    CHECK(value_of(whole->observe(), "contacts") > 2);
+    advance(*whole, 4);
+    const Checkpoint half = whole->checkpoint();
+    advance(*whole, 20);
+    const auto resumed = create_simulation(c);
+    resumed->restore(half);
+    CHECK(resumed->steps_done() == half.step);
+    advance(*resumed, 20);
+    const Checkpoint a = whole->checkpoint(), b = resumed->checkpoint();
+    CHECK(a.step == b.step);
+    REQUIRE(a.arrays.size() == b.arrays.size());
+    for (const auto& [name, array] : a.arrays) {
+      CAPTURE(name);
+      CHECK((array.values == b.arrays.at(name).values));
+    }
+    const auto row = whole->observe(), resumed_row = resumed->observe();
+    for (std::size_t k = 0; k < row.size(); ++k) CHECK(row[k].value == resumed_row[k].value);
+  }
+}
+
+TEST_CASE("an updated-Lagrangian grain starts unstressed between the plates and gives back its work") {
+  const auto simulation = create_simulation(one_grain());
+  const auto start = simulation->observe();
+  CHECK(value_of(start, "wall_height") == doctest::Approx(2 * 5e-3).epsilon(0.01));
+  CHECK(value_of(start, "area_ratio") == doctest::Approx(1));
+  CHECK(value_of(start, "elastic_energy") == doctest::Approx(0));
+  int turns = 0;
+  while (!simulation->finished()) {
+    simulation->step();
+    turns += simulation->at_turning_point() && !simulation->finished();
+  }
+  CHECK(turns == 2);
+  CHECK(simulation->progress() == 1);
+  const auto end = simulation->observe();
+  CHECK(value_of(end, "strain") == doctest::Approx(0.1).epsilon(0.01));
+  CHECK(value_of(end, "force_top") > 0);
+  CHECK(value_of(end, "area_ratio") < 1);
+  const double stored = value_of(end, "elastic_energy") + value_of(end, "kinetic_energy");
+  CHECK(stored == doctest::Approx(value_of(end, "wall_work")).epsilon(0.2));
+}
+
+TEST_CASE(
+    "the updated-Lagrangian picture shows every point and the outline, under a pressure of both plates") {
+  const auto simulation = create_simulation(one_grain());
+  advance(*simulation, simulation->steps_planned() / 2);
+  const Scene scene = simulation->scene();
+  const auto& pressure = std::get<std::vector<double>>(scene.particles.at("pressure").values);
+  const auto& J = std::get<std::vector<double>>(scene.particles.at("J").values);
+  CHECK(pressure.size() > 150);
+  CHECK(J.size() == pressure.size());
+  double mean = 0;
+  for (const double p : pressure) mean += p / static_cast<double>(pressure.size());
+  CHECK(mean > 0);
+  CHECK(std::get<std::vector<double>>(scene.outlines.at("position").values).size() == 2 * 8 * 4);
+  CHECK(scene.wall_segments.size() == 8);
+}
+
+TEST_CASE("the updated Lagrangian takes one grain between plates only, and known words") {
+  Case c = one_grain();
+  c.experiment.loading = "compaction";
+  CHECK_THROWS_AS(create_simulation(c), UsageError);
+  c = one_grain();
+  c.mpm.shape_functions = "cubic";
+  CHECK_THROWS_AS(create_simulation(c), UsageError);
+  c = one_grain();
+  c.mpm.contact_on = "points";
+  CHECK_THROWS_AS(create_simulation(c), UsageError);
+}
