@@ -21,16 +21,16 @@ std::uint32_t zigzag(std::uint32_t difference, int bytes) {
 
 }  // namespace
 
-EncodedArray encode_reals(std::span<const float> values, std::size_t stride, int bits) {
+EncodedArray encode_reals(std::span<const float> values, std::size_t stride, double step) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double value : values)
     if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
   if (!(low <= high)) low = high = 0;
-  const double largest = std::exp2(bits) - 1, step = (high - low) / largest;
+  step = std::max(step, (high - low) / 65535);
   std::vector<std::uint32_t> q(values.size(), 0);
   for (std::size_t i = 0; i < q.size() && step > 0; ++i)
     if (std::isfinite(values[i])) q[i] = static_cast<std::uint32_t>(std::lround((values[i] - low) / step));
-  const int bytes = bits > 8 ? 2 : 1;
+  const int bytes = high - low < 255.5 * step ? 1 : 2;
   return {low, step, bytes, q.size(), encode_whole(q, stride, bytes)};
 }
 

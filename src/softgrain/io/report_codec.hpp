@@ -17,9 +17,10 @@ struct EncodedArray {
   std::string planes;     ///< count * bytes bytes, see encode_whole
 };
 
-/// Reals to q of `bits` bits (1 to 16): the smallest value is q = 0, the largest 2^bits - 1. What is not
-/// finite becomes the smallest. Each differs from the value `stride` places before it only a little.
-EncodedArray encode_reals(std::span<const float> values, std::size_t stride, int bits);
+/// Reals to the nearest multiple of `step` above the smallest, or of what 16 bits reach if that is coarser.
+/// What is not finite becomes the smallest. Each value should differ little from the one `stride` places
+/// before it.
+EncodedArray encode_reals(std::span<const float> values, std::size_t stride, double step);
 
 /// Whole numbers from 0 that come as floats, exactly (below 2^24).
 EncodedArray encode_indices(std::span<const float> values, std::size_t stride);

@@ -74,7 +74,7 @@ void add_outlines(ReportFrame& frame, const Scene& scene) {
 }
 
 /// Means over a grain's particles, weighted by their areas: pressure, and the centre where there is no
-/// outline.
+/// outline. Positions count from there.
 void add_grain_means(ReportFrame& frame) {
   auto& columns = frame.columns;
   if (!columns.contains("particle.grain") || !columns.contains("particle.radius")) return;
@@ -91,9 +91,14 @@ void add_grain_means(ReportFrame& frame) {
     return Column(sum.begin(), sum.end());
   };
   if (columns.contains("particle.pressure")) columns["grain.pressure"] = mean("pressure");
-  if (columns.contains("grain.x")) return;
-  columns["grain.x"] = mean("x");
-  columns["grain.y"] = mean("y");
+  for (const std::string axis : {"x", "y"}) {
+    const std::string centre_name = "grain." + axis;
+    if (!columns.contains(centre_name)) columns[centre_name] = mean(axis);
+    const Column& centre = columns[centre_name];
+    Column& position = columns["particle." + axis];
+    for (std::size_t i = 0; i < position.size(); ++i)
+      position[i] -= centre[static_cast<std::size_t>(grain[i])];
+  }
 }
 
 void add_contacts(ReportFrame& frame, const Scene& scene) {

@@ -9,7 +9,8 @@
 namespace softgrain {
 
 /// One picture of the page: columns of numbers by name. Absent when the scene does not have them.
-///   particle.x .y .radius [m], .pressure [Pa], .coordination, .grain
+///   particle.x .y [m] (from the centre of its grain if there are grains), .radius [m], .pressure [Pa],
+///     .coordination, .grain
 ///   grain.x .y [m] (centroid), .pressure [Pa] (mean over its area), .area [m^2] (of its outline)
 ///   outline.x .y [m] from the grain's centroid, outline.grain
 ///   wall.x0 .y0 .x1 .y1 [m]

@@ -16,7 +16,7 @@ struct ReportRun {
 /// How much a page may hold before it is thinned: soft grains' points are merged in fours, primaries are
 /// shown at fewer times, weak contacts and rows of the series are left out.
 struct ReportLimits {
-  double particles = 12.5e6;  ///< times frames
+  double particles = 14e6;  ///< times frames
   double contacts = 3e6;      ///< in all frames
   double rows = 4000;         ///< of the series
 };

@@ -1,0 +1,60 @@
+// The little of WebGL2 that the page needs: programs, and buffers that are filled anew for each picture.
+
+export class Program {
+  readonly handle: WebGLProgram;
+  private uniforms = new Map<string, WebGLUniformLocation | null>();
+
+  constructor(private gl: WebGL2RenderingContext, vertex: string, fragment: string) {
+    this.handle = gl.createProgram()!;
+    for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]] as const) {
+      const shader = gl.createShader(type)!;
+      gl.shaderSource(shader, "#version 300 es\nprecision highp float;\n" + source);
+      gl.compileShader(shader);
+      gl.attachShader(this.handle, shader);
+    }
+    gl.linkProgram(this.handle);
+    if (!gl.getProgramParameter(this.handle, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(this.handle) ?? "");
+  }
+
+  set(name: string, ...values: number[]): void {
+    if (!this.uniforms.has(name)) this.uniforms.set(name, this.gl.getUniformLocation(this.handle, name));
+    const place = this.uniforms.get(name)!;
+    if (values.length === 1) this.gl.uniform1f(place, values[0]);
+    else this.gl.uniform2f(place, values[0], values[1]);
+  }
+}
+
+/** Numbers per vertex (or per instance): `sizes` floats for each attribute, in the order of locations 0, 1, ... */
+export class Buffer {
+  private array: WebGLVertexArrayObject;
+  private data: WebGLBuffer;
+  private bytes = 0;
+
+  constructor(private gl: WebGL2RenderingContext, sizes: number[], perInstance = false) {
+    this.array = gl.createVertexArray()!;
+    this.data = gl.createBuffer()!;
+    gl.bindVertexArray(this.array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.data);
+    const stride = 4 * sizes.reduce((sum, size) => sum + size, 0);
+    let offset = 0;
+    sizes.forEach((size, location) => {
+      gl.enableVertexAttribArray(location);
+      gl.vertexAttribPointer(location, size, gl.FLOAT, false, stride, offset);
+      if (perInstance) gl.vertexAttribDivisor(location, 1);
+      offset += 4 * size;
+    });
+    gl.bindVertexArray(null);
+  }
+
+  fill(values: Float32Array): void {
+    const { gl } = this;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.data);
+    if (values.byteLength > this.bytes) gl.bufferData(gl.ARRAY_BUFFER, values, gl.DYNAMIC_DRAW);
+    else gl.bufferSubData(gl.ARRAY_BUFFER, 0, values);
+    this.bytes = Math.max(this.bytes, values.byteLength);
+  }
+
+  bind(): void {
+    this.gl.bindVertexArray(this.array);
+  }
+}

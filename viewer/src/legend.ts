@@ -1,0 +1,45 @@
+import { Colouring } from "./colouring";
+import { css, categoryColour, gradient } from "./colours";
+import { ForceScale } from "./picture";
+import { scaleFor, short, withUnit } from "./units";
+
+/** A bar with its ends and unit; squares where the colour only tells grains apart. */
+export function showLegend(parent: HTMLElement, colouring: Colouring | null): void {
+  parent.replaceChildren();
+  if (!colouring) return;
+  const { low, high, label, unit, map } = colouring;
+  const bar = document.createElement("div");
+  if (map === "categories") {
+    bar.className = "squares";
+    for (let k = 0; k < 12; ++k) {
+      const square = document.createElement("i");
+      square.style.background = css(categoryColour(k));
+      bar.append(square);
+    }
+    parent.append(text("a colour for each grain"), bar);
+    return;
+  }
+  const scale = scaleFor(Math.max(Math.abs(low), Math.abs(high)), unit);
+  bar.className = "bar";
+  bar.style.background = gradient(map);
+  const ticks = document.createElement("div");
+  ticks.className = "ticks";
+  ticks.append(...[low, (low + high) / 2, high].map((value) => text(short(scale.factor * value))));
+  parent.append(text(scale.unit ? `${label} [${scale.unit}]` : label), bar, ticks);
+}
+
+/** A line as wide as the force that stands beside it. */
+export function showForceKey(parent: HTMLElement, scale: ForceScale | null, pixelsPerMetre: number): void {
+  parent.replaceChildren();
+  if (!scale) return;
+  const force = Number((scale.force / 2).toPrecision(1));
+  const line = document.createElement("i");
+  line.style.height = `${Math.max(1, (scale.width * pixelsPerMetre * force) / scale.force)}px`;
+  parent.append(line, text(`contact force ${withUnit(force, "N/m")}`));
+}
+
+function text(words: string): HTMLElement {
+  const span = document.createElement("span");
+  span.textContent = words;
+  return span;
+}

@@ -1,0 +1,189 @@
+// The page: state, and what happens when it changes.
+import { Colouring, colourings } from "./colouring";
+import { runColour } from "./colours";
+import { onKey } from "./keys";
+import { showForceKey, showLegend } from "./legend";
+import { takePayloads } from "./payload";
+import { Plots } from "./plots";
+import { Pointer } from "./pointer";
+import { showProvenance } from "./provenance";
+import { Renderer } from "./renderer";
+import { Run } from "./run";
+import { valueAt } from "./series";
+import { short, withUnit } from "./units";
+
+const $ = <T extends HTMLElement = HTMLElement>(selector: string) => document.querySelector<T>(selector)!;
+const [slider, play, select, chains] = [
+  $<HTMLInputElement>(".slider"), $<HTMLButtonElement>(".play"), $<HTMLSelectElement>(".colouring"),
+  $<HTMLInputElement>(".chains input"),
+];
+
+class Page {
+  private shown = 0;
+  private frame = 0;
+  private playing = false;
+  private highlight = -1;
+  private choices: Colouring[] = [];
+  private renderer: Renderer | null = null;
+  private plots: Plots;
+  private drawPending = false;
+
+  constructor(private runs: Run[]) {
+    try {
+      this.renderer = new Renderer($<HTMLCanvasElement>("canvas"));
+    } catch (error) {
+      say(`The packing cannot be drawn here (${(error as Error).message}); the curves and numbers can.`);
+    }
+    $("h1").textContent = document.title = runs.map((run) => run.name).join(", ");
+    this.showRunChooser();
+    this.plots = new Plots($(".plots"), runs, (frame) => this.seek(frame));
+    showProvenance($("footer"), runs);
+    this.listen();
+    this.showRun(0);
+  }
+
+  private get run(): Run {
+    return this.runs[this.shown];
+  }
+
+  private listen(): void {
+    slider.addEventListener("input", () => this.seek(Number(slider.value)));
+    play.addEventListener("click", () => this.togglePlay());
+    select.addEventListener("change", () => this.draw());
+    chains.addEventListener("change", () => this.draw());
+    $(".theme").addEventListener("click", () => this.toggleTheme());
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.themeChanged());
+    document.addEventListener("keydown", (event) =>
+      onKey(event, { frame: this.frame, frames: this.run.frames, seek: (k) => this.seek(k), play: () => this.togglePlay() }));
+    if (!this.renderer) return;
+    new ResizeObserver(() => this.draw()).observe($(".stage"));
+    new Pointer($<HTMLCanvasElement>("canvas"), $(".tip"), this.renderer, () => this.frame, (grain) => {
+      this.highlight = grain;
+      this.draw();
+    });
+  }
+
+  private showRunChooser(): void {
+    const chooser = $(".runs");
+    chooser.hidden = this.runs.length < 2;
+    this.runs.forEach((run, index) => {
+      const button = document.createElement("button");
+      button.role = "radio";
+      button.style.setProperty("--run", runColour(index));
+      button.textContent = run.name;
+      button.addEventListener("click", () => this.showRun(index));
+      chooser.append(button);
+    });
+  }
+
+  showRun(index: number): void {
+    const share = this.frame / Math.max(1, this.run.frames - 1);
+    this.shown = index;
+    this.highlight = -1;
+    document.querySelectorAll(".runs button").forEach((b, k) => b.setAttribute("aria-checked", String(k === index)));
+    $(".summary").textContent = summary(this.run);
+    const before = select.value;
+    this.choices = colourings(this.run);
+    select.replaceChildren(...this.choices.map((c) => new Option(c.label, c.key, false, c.key === before)));
+    this.renderer?.show(this.run);
+    $(".stage").style.setProperty("--aspect", String(Math.min(1.6, Math.max(0.75, this.renderer?.aspect ?? 1))));
+    $(".chains").hidden = !this.renderer?.forceScale;
+    slider.max = String(this.run.frames - 1);
+    this.seek(Math.round(share * (this.run.frames - 1)));
+  }
+
+  seek(frame: number): void {
+    this.frame = Math.min(this.run.frames - 1, Math.max(0, frame));
+    slider.value = String(this.frame);
+    const now = this.now();
+    $(".now").textContent = now;
+    slider.setAttribute("aria-valuetext", now);
+    this.plots.mark(this.shown, this.frame);
+    document.body.dataset.frame = String(this.frame);
+    this.draw();
+  }
+
+  /** "strain 0.213 · 1.2 ms · snapshot 8 of 25". */
+  private now(): string {
+    const { times } = this.run.header;
+    const strain = valueAt(this.run.series, "strain", times[this.frame]);
+    const words = [withUnit(times[this.frame], "s"), `snapshot ${this.frame + 1} of ${times.length}`];
+    return (Number.isFinite(strain) ? [`strain ${short(strain)}`, ...words] : words).join(" · ");
+  }
+
+  private draw(): void {
+    if (this.drawPending) return;
+    this.drawPending = true;
+    requestAnimationFrame(() => {
+      this.drawPending = false;
+      this.drawNow();
+    });
+  }
+
+  private drawNow(): void {
+    if (!this.renderer) return;
+    const colouring = this.choices.find((choice) => choice.key === select.value) ?? null;
+    this.renderer.draw(this.frame, { colouring, chains: chains.checked, highlight: this.highlight });
+    showLegend($(".legend"), colouring);
+    showForceKey($(".force"), chains.checked ? this.renderer.forceScale : null, this.renderer.pixelsPerMetre);
+    $("canvas").setAttribute("aria-label", `Packing of ${this.run.name}, ${this.now()}, coloured by ${colouring?.label ?? "nothing"}`);
+    document.body.dataset.drawn = String(this.frame);
+  }
+
+  private togglePlay(): void {
+    this.playing = !this.playing;
+    play.textContent = this.playing ? "❚❚" : "▶";
+    play.ariaLabel = this.playing ? "Pause" : "Play";
+    if (!this.playing) return;
+    if (this.frame === this.run.frames - 1) this.seek(0);
+    this.playFrom(performance.now(), this.frame);
+  }
+
+  /** The whole run takes 5 to 20 s. */
+  private playFrom(begin: number, first: number): void {
+    const perSecond = Math.min(15, Math.max(5, this.run.frames / 12));
+    const tick = (now: number) => {
+      if (!this.playing) return;
+      const frame = first + Math.floor(((now - begin) / 1000) * perSecond);
+      if (frame > this.frame) this.seek(frame);
+      if (this.frame >= this.run.frames - 1) this.togglePlay();
+      else requestAnimationFrame(tick);
+    };
+    requestAnimationFrame(tick);
+  }
+
+  private toggleTheme(): void {
+    const root = document.documentElement;
+    const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+    root.dataset.theme = dark ? "light" : "dark";
+    this.themeChanged();
+  }
+
+  private themeChanged(): void {
+    this.plots.redraw();
+    this.draw();
+  }
+}
+
+/** "compaction, mpm, 20 grains, friction 0.3". */
+function summary(run: Run): string {
+  const value = (key: string) => new RegExp(`^${key} = "?([^"\\n#]*?)"?\\s*(?:#.*)?$`, "m").exec(run.header.case)?.[1];
+  const words = [value("loading"), value("model")].filter(Boolean);
+  if (run.grains > 1) words.push(`${run.grains} grains`);
+  else if (!run.hasOutlines) words.push(`${run.column("particle.x", 0).length} primaries`);
+  if (value("friction")) words.push(`friction ${value("friction")}`);
+  return words.join(" · ");
+}
+
+function say(words: string): void {
+  $(".message").textContent = words;
+  $(".message").hidden = false;
+}
+
+takePayloads().then(
+  (payloads) => {
+    if (payloads.length === 0) return say("This page is a template: `softgrain report RUN` puts a run into it.");
+    new Page(payloads.map((payload) => new Run(payload)));
+    document.body.dataset.ready = "true";
+    return undefined;
+  }).catch((error: Error) => say(`This page could not be read: ${error.message}. It needs a browser of 2023 or later.`));

@@ -1,0 +1,122 @@
+"""Drives Chromium through the DevTools protocol over a pipe: no port, no package."""
+
+import base64
+import json
+import os
+import select
+import subprocess
+import tempfile
+import time
+
+
+class Browser:
+    """A headless Chromium with one page; collects what it logs and what it asks of the network."""
+
+    def __init__(self, program, width=1440, height=900, dark=False):
+        self._profile = tempfile.TemporaryDirectory(prefix="softgrain-chromium-")
+        to_child, self._write = os.pipe()
+        self._read, from_child = os.pipe()
+        command = [program, "--headless=new", "--no-sandbox", "--remote-debugging-pipe", "--disable-dev-shm-usage",
+                   "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", "--no-first-run",
+                   f"--user-data-dir={self._profile.name}", "about:blank"]
+        # Chromium reads commands from descriptor 3 and answers on 4.
+        words = ["sh", "-c", f'exec "$@" 3<&{to_child} 4>&{from_child}', "sh", *command]
+        self._process = subprocess.Popen(words, pass_fds=(to_child, from_child), stdout=subprocess.DEVNULL,
+                                         stderr=subprocess.DEVNULL)
+        os.close(to_child)
+        os.close(from_child)
+        self._pending, self._number, self._session = b"", 0, None
+        self.errors, self.requests = [], []
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Network", "Log"):
+            self.call(f"{domain}.enable")
+        self.resize(width, height, phone=width < 600)
+        self.prefer("dark" if dark else "light")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._process.terminate()
+        self._process.wait(20)
+        os.close(self._write)
+        os.close(self._read)
+        self._profile.cleanup()
+
+    def call(self, method, **parameters):
+        """One command of the protocol; its result."""
+        self._number += 1
+        message = {"id": self._number, "method": method, "params": parameters}
+        if self._session:
+            message["sessionId"] = self._session
+        data = json.dumps(message).encode() + b"\0"
+        while data:
+            data = data[os.write(self._write, data):]
+        while True:
+            answer = self._receive()
+            if answer.get("id") == self._number:
+                if "error" in answer:
+                    raise RuntimeError(f"{method}: {answer['error']}")
+                return answer["result"]
+
+    def _receive(self, limit=60):
+        while b"\0" not in self._pending:
+            if not select.select([self._read], [], [], limit)[0]:
+                raise TimeoutError("no answer from the browser")
+            piece = os.read(self._read, 1 << 16)
+            if not piece:
+                raise RuntimeError("the browser has gone")
+            self._pending += piece
+        text, _, self._pending = self._pending.partition(b"\0")
+        message = json.loads(text)
+        self._note(message.get("method"), message.get("params", {}))
+        return message
+
+    def _note(self, method, parameters):
+        if method == "Runtime.exceptionThrown":
+            self.errors.append(parameters["exceptionDetails"])
+        elif method == "Runtime.consoleAPICalled" and parameters["type"] in ("error", "warning", "assert"):
+            self.errors.append(parameters["args"])
+        elif method == "Log.entryAdded" and parameters["entry"]["level"] in ("error", "warning"):
+            self.errors.append(parameters["entry"])
+        elif method == "Network.requestWillBeSent":
+            self.requests.append(parameters["request"]["url"])
+
+    def open(self, path):
+        self.call("Page.navigate", url=f"file://{os.path.abspath(path)}")
+        self.wait("document.body && document.body.dataset.drawn !== undefined")
+
+    def resize(self, width, height, phone=False):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=2 if phone else 1,
+                  mobile=phone)
+
+    def prefer(self, scheme):
+        self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+
+    def run(self, script):
+        """The value of an expression in the page."""
+        result = self.call("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in result:
+            raise RuntimeError(result["exceptionDetails"])
+        return result["result"].get("value")
+
+    def wait(self, condition, limit=60):
+        end = time.monotonic() + limit
+        while not self.run(condition):
+            if time.monotonic() > end:
+                raise TimeoutError(condition)
+            time.sleep(0.05)
+
+    def press(self, key, code=0, text=""):
+        for kind in ("keyDown", "keyUp"):
+            extra = {"text": text} if text and kind == "keyDown" else {}
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, windowsVirtualKeyCode=code, **extra)
+
+    def mouse(self, kind, x, y, button="none"):
+        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button=button, clickCount=int(button != "none"))
+
+    def screenshot(self, path, full=False):
+        data = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=full)["data"]
+        with open(path, "wb") as file:
+            file.write(base64.b64decode(data))
