@@ -130,13 +130,15 @@ TEST_CASE("a column of three soft blocks carries its weight at the bottom, and t
   };
   CHECK(-dynamics.wall_impulse(0)[1] / dt == doctest::Approx(weight_from(0)).epsilon(0.01));
   for (const int below : {0, 1}) {
-    double carried = 0;  // the slaves are those of the smaller block, above
+    double carried = 0;
     for (std::size_t c = 0; c < dynamics.contacts.size(); ++c) {
       const OutlineContact& contact = dynamics.contacts[c];
-      if (contact.wall >= 0 || dynamics.grains.grain_of_vertex(contact.master[0]) != below) continue;
-      const Vec<2> P =
-          dynamics.impulse[c][0] * contact.normal + dynamics.impulse[c][1] * perpendicular(contact.normal);
-      carried += P[1] / dt;
+      if (contact.wall >= 0) continue;
+      const int slave = dynamics.grains.grain_of_vertex(contact.vertex);
+      const int master = dynamics.grains.grain_of_vertex(contact.master[0]);
+      if (std::min(slave, master) != below) continue;
+      const double force = impulse_vector(contact, dynamics.impulse[c])[1] / dt;
+      carried += slave > master ? force : -force;
     }
     CHECK(carried == doctest::Approx(weight_from(below + 1)).epsilon(0.01));
   }

@@ -189,10 +189,11 @@ Checkpoint MpmSimulation<Dynamics>::checkpoint() const {
   std::vector<std::int64_t> bodies;
   std::vector<double> places;
   for (const OutlineContact& c : dynamics_.contacts) {
-    bodies.insert(bodies.end(), {c.vertex, c.wall, c.master[0], c.master[1]});
+    bodies.insert(bodies.end(), {c.vertex, c.wall});
+    bodies.insert(bodies.end(), c.master.begin(), c.master.end());
     places.insert(places.end(), {c.share, c.normal[0], c.normal[1], c.gap, c.slip});
   }
-  state.arrays["contact_bodies"] = {4, std::move(bodies)};
+  state.arrays["contact_bodies"] = {6, std::move(bodies)};
   state.arrays["contact_places"] = {5, std::move(places)};
   state.arrays["contact_impulse"] = to_array<2>(dynamics_.impulse);
   std::vector<Vec<2>> wall_point;
@@ -223,15 +224,15 @@ void MpmSimulation<Dynamics>::restore(const Checkpoint& state) {
       bodies == state.arrays.end() ? nullptr : std::get_if<std::vector<std::int64_t>>(&bodies->second.values);
   if (numbers == nullptr)
     throw IoError("the checkpoint has no array 'contact_bodies': it belongs to another case");
-  const std::size_t count = numbers->size() / 4;
+  const std::size_t count = numbers->size() / 6;
   std::vector<Vec<5>> places(count);
   from_array<5>(state, "contact_places", places);
   dynamics_.contacts.clear();
   for (std::size_t c = 0; c < count; ++c) {
-    const auto body = [&](std::size_t k) { return static_cast<int>((*numbers)[4 * c + k]); };
+    const auto body = [&](std::size_t k) { return static_cast<int>((*numbers)[6 * c + k]); };
     dynamics_.contacts.push_back({.vertex = body(0),
                                   .wall = body(1),
-                                  .master = {body(2), body(3)},
+                                  .master = {body(2), body(3), body(4), body(5)},
                                   .share = places[c][0],
                                   .normal = {places[c][1], places[c][2]},
                                   .gap = places[c][3],

@@ -172,6 +172,26 @@ void BatchedCholesky::solve(std::span<Wide> x) const {
     for (int d = 0; d < 2; ++d) x[2 * i + d] = y[2 * pattern_.order_[i] + d];
 }
 
+void BatchedCholesky::begin_solve(std::span<const Wide> x, std::span<Wide> y, std::span<Wide> kept) const {
+  for (int i = 0; i < pattern_.nodes(); ++i)
+    for (int d = 0; d < 2; ++d) y[2 * pattern_.order_[i] + d] = x[2 * i + d];
+  forward(y.data(), 0);
+  const int first = pattern_.nodes() - pattern_.kept_;
+  std::copy(y.begin() + 2 * first, y.end(), scratch_.begin() + 2 * first);
+  backward(scratch_.data(), first);
+  std::copy(scratch_.begin() + 2 * first, scratch_.end(), kept.begin());
+}
+
+void BatchedCholesky::finish_solve(std::span<Wide> y, std::span<const Wide> h, std::span<Wide> x) const {
+  const int first = pattern_.nodes() - pattern_.kept_;
+  std::copy(h.begin(), h.end(), scratch_.begin() + 2 * first);
+  forward(scratch_.data(), first);
+  for (int k = 2 * first; k < 2 * pattern_.nodes(); ++k) y[k] += scratch_[k];
+  backward(y.data(), 0);
+  for (int i = 0; i < pattern_.nodes(); ++i)
+    for (int d = 0; d < 2; ++d) x[2 * i + d] = y[2 * pattern_.order_[i] + d];
+}
+
 /// Column by column of the identity; only the end of the factor takes part, and rows above the column follow
 /// by symmetry.
 void BatchedCholesky::kept_inverse(std::span<Wide> inverse) const {

@@ -57,6 +57,12 @@ class BatchedCholesky {
   unsigned factor();
   /// x <- A^-1 x; x: (2 nodes) in the order of the nodes.
   void solve(std::span<Wide> x) const;
+  /// The first half of a solve: y = L^-1 x (2 nodes, in elimination order), and the solution on the kept
+  /// nodes, (A^-1 x)_b (2 kept).
+  void begin_solve(std::span<const Wide> x, std::span<Wide> y, std::span<Wide> kept) const;
+  /// The second half, with more on the kept nodes that is known only now: A^-1 (x + h), h: (2 kept).
+  /// Overwrites y; the solution goes to x, in the order of the nodes.
+  void finish_solve(std::span<Wide> y, std::span<const Wide> h, std::span<Wide> x) const;
   /// Compliance of the kept nodes, (A^-1)_bb: (2 kept)^2 row-major.
   void kept_inverse(std::span<Wide> inverse) const;
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -36,23 +38,30 @@ class ElasticContacts {
     int count = 0;
     std::size_t first = 0, matrix = 0;
   };
+  /// Where a contact finds its vertices' du in increment_: the slave's, then the master's four.
+  struct Place {
+    std::array<std::size_t, 5> at{};
+    std::array<double, 5> weight{};  ///< 1, -w_k
+    int count = 1;
+    int slave_grain = 0, master_grain = -1;
+    std::array<std::ptrdiff_t, 2> column{-1, -1};  ///< of n and t in columns_, once they are needed
+  };
   void number_vertices();
   void copy_compliance(std::span<const OutlineCompliance> compliance);
-  const double* row(const Condensed& grain, int vertex, int axis) const {
-    return &compliance_[grain.matrix + static_cast<std::size_t>(2 * local_[vertex] + axis) * 2 * grain.count];
-  }
-  Vec<2> increment_of(int vertex) const;
-  void add_force(int vertex, const Vec<2>& force);
-  Mat<2> compliance_between(int vertex_a, int vertex_b) const;
-  Mat<2> delassus_of(const OutlineContact& contact) const;
+  Place place_of(const OutlineContact& contact) const;
+  const double* column(int contact, int axis);
+  Mat<2> delassus_of(int contact) const;
 
   const SoftGrains& grains_;
   std::span<const OutlineContact> contacts_;
   double dt_;
   std::vector<int> local_;  // (outline vertices) number among the grain's vertices in contact, -1 if none
   std::vector<Condensed> condensed_;  // (grains)
+  std::vector<Place> places_;         // (contacts)
   std::vector<double> increment_;     // du of the vertices in contact, grain by grain
   std::vector<double> compliance_;
+  std::vector<double>
+      columns_;  // du of the slave's, then of the master's grain under a unit force at a contact
   std::vector<Mat<2>> delassus_;
 };
 

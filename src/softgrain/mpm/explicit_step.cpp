@@ -28,12 +28,15 @@ ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
                               (grains.density * shape.node_volume[i] * grains.radius(g) * grains.radius(g)));
   }
   outline_velocity_.resize(grains.outline_size());
+  force_.resize(grains.batches.size());
+  velocity_start_.resize(grains.batches.size());
 }
 
 SoftStepReport ExplicitDynamics::step(double dt) {
   // contacts where x + dt v will be
   grains.gather_outline(outline_.start);
   read_outline();
+  velocity_start_outline_ = outline_velocity_;
   outline_.position = outline_.start;
   for (std::size_t v = 0; v < outline_velocity_.size(); ++v)
     outline_.position[v] += dt * outline_velocity_[v];
@@ -45,7 +48,7 @@ SoftStepReport ExplicitDynamics::step(double dt) {
   contacts = std::move(found);
 
   LumpedContacts system(contacts, walls, outline_velocity_, inverse_mass_, dt);
-  kick(dt);  // v_free = v + dt M^-1 (f_ext - f_int)
+  kick(dt);
   read_outline();
   std::vector<double> friction;
   for (const OutlineContact& c : contacts)
@@ -56,40 +59,70 @@ SoftStepReport ExplicitDynamics::step(double dt) {
   solver.velocity_scale = mean_radius_ / dt;
   const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction, solver);
   write_outline();
-  for (GrainBatch& batch : grains.batches)
-    for (std::size_t i = 0; i < batch.position.size(); ++i) batch.position[i] += Wide(dt) * batch.velocity[i];
+  drift(dt);
   grains.gather_outline(outline_.position);
+  add_contact_work(dt);
 
   SoftStepReport report{.iterations = 1, .sweeps = solved.sweeps, .converged = solved.converged};
-  wall_impulse_.assign(walls.size(), {});
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    if (!(impulse[c][0] > 0)) continue;
-    ++report.contacts;
+    report.contacts += impulse[c][0] > 0;
     report.penetration_max =
         std::max(report.penetration_max, -gap_now(contacts[c], outline_) / smallest_radius_);
-    const Vec<2>& n = contacts[c].normal;
-    if (contacts[c].wall >= 0)
-      wall_impulse_[contacts[c].wall] -= impulse[c][0] * n + impulse[c][1] * perpendicular(n);
   }
   return report;
 }
 
+/// v_free = v + dt M^-1 (f_ext - f_int)
 void ExplicitDynamics::kick(double dt) {
-  for (GrainBatch& batch : grains.batches) {
+  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+    GrainBatch& batch = grains.batches[b];
     if (options.damping_time > 0)
       for (std::size_t i = 0; i < batch.position.size(); ++i)
         batch.position[i] += Wide(options.damping_time) * batch.velocity[i];
-    const unsigned inverted = internal_force(grains, batch, force_);
+    const unsigned inverted = internal_force(grains, batch, force_[b]);
     for (int lane = 0; lane < Wide::size; ++lane)
       if ((inverted >> lane & 1u) != 0 && batch.grain[lane] >= 0)
         throw NumericalError(fmt::format(
             "a material point of grain {} is turned inside out; use a smaller time step", batch.grain[lane]));
+    velocity_start_[b] = batch.velocity;
     const Wide scale = Wide(dt) / (grains.density * (batch.radius * batch.radius));
     for (std::size_t i = 0; i < batch.position.size(); ++i) {
       if (options.damping_time > 0) batch.position[i] -= Wide(options.damping_time) * batch.velocity[i];
       const Wide rate = scale * Wide(1 / batch.topology->node_volume[i]);
-      for (int d = 0; d < 2; ++d) batch.velocity[i][d] += dt * options.gravity[d] - rate * force_[i][d];
+      for (int d = 0; d < 2; ++d) batch.velocity[i][d] += dt * options.gravity[d] - rate * force_[b][i][d];
     }
+  }
+}
+
+/// x+ = x + dt v+, and the work over the step, in which M (v+ - v) does (v+ + v)/2 . M (v+ - v) = dK.
+void ExplicitDynamics::drift(double dt) {
+  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+    GrainBatch& batch = grains.batches[b];
+    Wide internal = 0.0, gravity = 0.0;
+    for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
+      batch.position[i] += Wide(dt) * batch.velocity[i];
+      const Vec<2, Wide> moved = Wide(dt / 2) * (batch.velocity[i] + velocity_start_[b][i]);
+      internal += dot(force_[b][i], moved);
+      gravity += grains.node_mass(batch, i) * (options.gravity[0] * moved[0] + options.gravity[1] * moved[1]);
+    }
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) {
+      work.internal += internal[lane];
+      work.gravity += gravity[lane];
+    }
+  }
+}
+
+void ExplicitDynamics::add_contact_work(double dt) {
+  OutlineState mean = outline_;  // moved by (v+ + v)/2 dt
+  for (std::size_t v = 0; v < outline_velocity_.size(); ++v)
+    mean.position[v] = mean.start[v] + dt / 2 * (outline_velocity_[v] + velocity_start_outline_[v]);
+  wall_impulse_.assign(walls.size(), {});
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const Vec<2> P = impulse_vector(contacts[c], impulse[c]);
+    work.contacts -= dot(P, relative_displacement(contacts[c], mean)) / dt;
+    if (contacts[c].wall < 0) continue;
+    wall_impulse_[contacts[c].wall] -= P;
+    work.walls += dot(P, walls[contacts[c].wall].velocity);
   }
 }
 

@@ -11,7 +11,7 @@ namespace softgrain {
 struct ExplicitOptions {
   double damping_time =
       0;  ///< tau [s]: internal forces are taken at x + tau v, which damps the mesh's own vibrations
-  SolverOptions solver{.max_sweeps = 200, .tolerance = 1e-6};  ///< NLGS; in units of mean radius / dt
+  SolverOptions solver{.max_sweeps = 200, .tolerance = 5e-6};  ///< NLGS; in units of mean radius / dt
   double friction = 0;
   double wall_friction = 0;
   Vec<2> gravity{};  ///< [m/s^2]
@@ -38,9 +38,12 @@ class ExplicitDynamics {
   ExplicitOptions options;
   std::vector<OutlineContact> contacts;
   std::vector<Vec<2>> impulse;
+  WorkBudget work;  ///< since the start; there is no `inertia`
 
  private:
   void kick(double dt);
+  void drift(double dt);
+  void add_contact_work(double dt);
   void read_outline();
   void write_outline();
 
@@ -50,7 +53,8 @@ class ExplicitDynamics {
   std::vector<Vec<2>> outline_velocity_;
   std::vector<double> inverse_mass_;  // (outline vertices)
   std::vector<Vec<2>> wall_impulse_;
-  WideVectors force_;
+  std::vector<WideVectors> force_, velocity_start_;  // per batch
+  std::vector<Vec<2>> velocity_start_outline_;
 };
 
 /// A stable step [s]: `safety` times the smallest distance of two nodes of a cell over the wave speed of

@@ -14,6 +14,12 @@ namespace {
 /// A correction larger than this, over the mean radius, is not trusted.
 constexpr double largest_correction = 0.5;
 
+/// Iterations after which the tangent is made anew.
+constexpr int refactor_every = 8;
+
+/// What the first iteration is supposed to correct, over the mean radius.
+constexpr double first_correction = 0.01;
+
 std::span<Wide> numbers(WideVectors& vectors) { return {&vectors[0][0], 2 * vectors.size()}; }
 
 /// First grain among the lanes set in `lanes`, -1 if none holds a grain.
@@ -41,7 +47,7 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
     const std::size_t width = 2 * batch.topology->grid.outline_nodes();
     compliance_.emplace_back(width * width);
   }
-  right_.resize(grains.batches.size());
+  half_solved_.resize(grains.batches.size());
   force_.resize(grains.batches.size());
   wall_impulse_.resize(walls.size());
 }
@@ -74,7 +80,6 @@ SoftStepReport ImplicitDynamics::step(double dt) {
     }
     part /= 2;
   }
-  report.converged = true;
   return report;
 }
 
@@ -94,25 +99,21 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
 
   Failure failure = factor(dt, options.proximal, report);
   if (failure == Failure::indefinite_matrix) failure = factor(dt, 4 * options.proximal, report);
+  double correction = first_correction;
   for (int iteration = 1; failure == Failure::none; ++iteration) {
     if ((failure = residual(dt)) != Failure::none) break;
-    solve_contacts(dt, report);
-    const double correction = correct() / mean_radius_;
+    report.converged = solve_contacts(dt, options.forcing * correction, report);
+    correction = correct() / mean_radius_;
     ++report.iterations;
     report.residual = correction;
     if (!(correction < largest_correction)) failure = Failure::too_far;
     if (correction < options.tolerance) break;
-    if (iteration == options.max_iterations) failure = Failure::no_convergence;
+    if (iteration == options.max_iterations)
+      failure = Failure::no_convergence;
+    else if (iteration % refactor_every == 0)
+      failure = factor(dt, options.proximal, report);
   }
-  if (failure != Failure::none) return failure;
-  finish(dt);
-  report.contacts = 0;
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    if (!(impulse[c][0] > 0)) continue;
-    ++report.contacts;
-    report.penetration_max = std::max(report.penetration_max, -contacts[c].gap / smallest_radius_);
-  }
-  return Failure::none;
+  return failure == Failure::none ? finish(dt, report) : failure;
 }
 
 /// A = M/dt^2 + K(x) + c p/l on the outline; its Cholesky factor and the compliance of the outlines.
@@ -163,13 +164,14 @@ ImplicitDynamics::Failure ImplicitDynamics::residual(double dt) {
         r[i][d] = m * Wide(options.gravity[d]) - r[i][d] - inertia;
       }
     }
-    right_[b] = r;
-    matrix_[b].solve(numbers(right_[b]));
-    const ReferenceGrid& grid = batch.topology->grid;
+    const int outline_nodes = batch.topology->grid.outline_nodes();
+    half_solved_[b].resize(r.size());
+    kept_.resize(outline_nodes);
+    matrix_[b].begin_solve(numbers(r), numbers(half_solved_[b]), numbers(kept_));
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
-      for (int i = grid.outline_begin; i < grid.nodes(); ++i)
-        outline_increment_[grains.outline_begin(batch.grain[lane]) + i - grid.outline_begin] = {
-            right_[b][i][0][lane], right_[b][i][1][lane]};
+      for (int v = 0; v < outline_nodes; ++v)
+        outline_increment_[grains.outline_begin(batch.grain[lane]) + v] = {kept_[v][0][lane],
+                                                                           kept_[v][1][lane]};
   }
   return Failure::none;
 }
@@ -181,8 +183,8 @@ std::vector<double> ImplicitDynamics::friction_of_contacts() const {
   return friction;
 }
 
-/// Contacts at the present positions, and their impulses by NLGS with warm start.
-void ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
+/// Contacts at the present positions, and their impulses by NLGS with warm start. True if it converged.
+bool ImplicitDynamics::solve_contacts(double dt, double tolerance, SoftStepReport& report) {
   grains.gather_outline(outline_.position);
   std::vector<OutlineContact> found = neighbours_.detect(grains, outline_);
   impulse = carried_impulses(grains, contacts, impulse, found);
@@ -192,7 +194,10 @@ void ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
     if (impulse[c][0] > 0) system.apply_impulse(c, impulse[c]);
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
-  report.sweeps += solve_nlgs<2>(system, std::span(impulse), friction_of_contacts(), solver).sweeps;
+  solver.tolerance = std::max(solver.tolerance, tolerance);
+  const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction_of_contacts(), solver);
+  report.sweeps += solved.sweeps;
+  return solved.converged;
 }
 
 /// x += A^-1 (r + H p/dt). Returns the largest correction [m].
@@ -201,12 +206,14 @@ double ImplicitDynamics::correct() {
   double largest = 0;
   for (std::size_t b = 0; b < grains.batches.size(); ++b) {
     GrainBatch& batch = grains.batches[b];
-    right_[b] = force_[b];
-    grains.scatter_outline(force, batch, right_[b]);
-    matrix_[b].solve(numbers(right_[b]));
+    WideVectors& dx = force_[b];
+    dx.assign(dx.size(), {});
+    grains.scatter_outline(force, batch, dx);
+    kept_.assign(dx.begin() + batch.topology->grid.outline_begin, dx.end());
+    matrix_[b].finish_solve(numbers(half_solved_[b]), numbers(kept_), numbers(dx));
     for (std::size_t i = 0; i < batch.position.size(); ++i) {
-      batch.position[i] += right_[b][i];
-      const Wide square = dot(right_[b][i], right_[b][i]);
+      batch.position[i] += dx[i];
+      const Wide square = dot(dx[i], dx[i]);
       for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
         if (!(square[lane] <= largest)) largest = square[lane], failed_grain_ = batch.grain[lane];
     }
@@ -214,22 +221,76 @@ double ImplicitDynamics::correct() {
   return std::sqrt(largest);
 }
 
-/// v = (x - x_n)/dt; the walls' impulses; the contacts as they are at the end.
-void ImplicitDynamics::finish(double dt) {
+/// v = (x - x_n)/dt; the walls' impulses; the work done; the contacts as they are at the end.
+ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& report) {
   for (std::size_t b = 0; b < grains.batches.size(); ++b) {
     GrainBatch& batch = grains.batches[b];
+    if (const unsigned inverted = internal_force(grains, batch, force_[b]);
+        (failed_grain_ = grain_in(batch, inverted)) >= 0)
+      return Failure::inverted_point;
     for (std::size_t i = 0; i < batch.position.size(); ++i)
       batch.velocity[i] = Wide(1 / dt) * (batch.position[i] - start_[b][i]);
   }
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    if (contacts[c].wall < 0) continue;
-    const Vec<2>& n = contacts[c].normal;
-    wall_impulse_[contacts[c].wall] -= impulse[c][0] * n + impulse[c][1] * perpendicular(n);
-  }
+  balance_momentum(dt);
   grains.gather_outline(outline_.position);
+  add_work(dt);
   std::vector<OutlineContact> found = neighbours_.detect(grains, outline_);
   impulse = carried_impulses(grains, contacts, impulse, found);
   contacts = std::move(found);
+  report.contacts = 0;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    report.contacts += impulse[c][0] > 0;
+    report.penetration_max = std::max(report.penetration_max, -contacts[c].gap / smallest_radius_);
+  }
+  return Failure::none;
+}
+
+/// What Newton's tolerance left of sum_i m_i (v - v_n)_i = dt f_ext + H p is given back to each grain as a
+/// whole.
+void ImplicitDynamics::balance_momentum(double dt) {
+  const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
+  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+    GrainBatch& batch = grains.batches[b];
+    WideVectors missing(batch.position.size());
+    grains.scatter_outline(force, batch, missing);
+    Wide mass = 0.0;
+    Vec<2, Wide> sum{};
+    for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
+      const Wide m = grains.node_mass(batch, i);
+      mass += m;
+      for (int d = 0; d < 2; ++d)
+        sum[d] += dt * (missing[i][d] + m * Wide(options.gravity[d])) -
+                  m * (batch.velocity[i][d] - velocity_start_[b][i][d]);
+    }
+    for (Vec<2, Wide>& v : batch.velocity) v += (1.0 / mass) * sum;
+  }
+}
+
+void ImplicitDynamics::add_work(double dt) {
+  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+    const GrainBatch& batch = grains.batches[b];
+    Wide internal = 0.0, inertia = 0.0, gravity = 0.0;
+    for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
+      const Wide m = grains.node_mass(batch, i);
+      const Vec<2, Wide> moved = batch.position[i] - start_[b][i];
+      const Vec<2, Wide> dv = batch.velocity[i] - velocity_start_[b][i];
+      internal += dot(force_[b][i], moved);
+      inertia += 0.5 * m * dot(dv, dv);
+      gravity += m * (options.gravity[0] * moved[0] + options.gravity[1] * moved[1]);
+    }
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) {
+      work.internal += internal[lane];
+      work.inertia += inertia[lane];
+      work.gravity += gravity[lane];
+    }
+  }
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const Vec<2> P = impulse_vector(contacts[c], impulse[c]);
+    work.contacts -= dot(P, relative_displacement(contacts[c], outline_)) / dt;
+    if (contacts[c].wall < 0) continue;
+    wall_impulse_[contacts[c].wall] -= P;
+    work.walls += dot(P, walls[contacts[c].wall].velocity);
+  }
 }
 
 void ImplicitDynamics::take_back() {

@@ -14,8 +14,9 @@ struct ImplicitOptions {
   int max_iterations = 40;  ///< of Newton's method
   double proximal =
       0.5;  ///< c of the term c p/l on the outline's diagonal of the tangent (p/l contact pressure)
-  int max_halvings = 8;                                        ///< of the time step before NumericalError
-  SolverOptions solver{.max_sweeps = 500, .tolerance = 1e-7};  ///< NLGS; in units of mean radius / dt
+  int max_halvings = 8;  ///< of the time step before NumericalError
+  double forcing = 0.1;  ///< eta: NLGS stops at eta times Newton's last correction (inexact Newton) ...
+  SolverOptions solver{.max_sweeps = 500, .tolerance = 1e-7};  ///< ... or at this; unit: mean radius / dt
   double friction = 0;                                         ///< mu between grains
   double wall_friction = 0;                                    ///< mu against walls
   Vec<2> gravity{};                                            ///< [m/s^2]
@@ -25,7 +26,7 @@ struct ImplicitOptions {
 ///   M (x - x_n - dt v_n)/dt^2 + f_int(x) = f_ext + H p/dt,   v = (x - x_n)/dt,
 ///   0 <= g(x) _|_ p_n >= 0,  |p_t| <= mu p_n.
 /// Newton's method detects contacts anew in every iteration; A = M/dt^2 + K + proximal term is factored once
-/// a step.
+/// a step, and again where Newton's method needs many iterations.
 class ImplicitDynamics {
  public:
   ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
@@ -45,6 +46,7 @@ class ImplicitDynamics {
   ImplicitOptions options;
   std::vector<OutlineContact> contacts;  ///< at the end of the last step
   std::vector<Vec<2>> impulse;           ///< theirs (p_n, p_t) [N s/m]
+  WorkBudget work;                       ///< since the start
 
  private:
   enum class Failure { none, inverted_point, indefinite_matrix, too_far, no_convergence };
@@ -52,9 +54,11 @@ class ImplicitDynamics {
   Failure try_step(double dt, SoftStepReport& report);
   Failure factor(double dt, double proximal, SoftStepReport& report);
   Failure residual(double dt);
-  void solve_contacts(double dt, SoftStepReport& report);
+  bool solve_contacts(double dt, double tolerance, SoftStepReport& report);
   double correct();
-  void finish(double dt);
+  Failure finish(double dt, SoftStepReport& report);
+  void balance_momentum(double dt);
+  void add_work(double dt);
   void take_back();
   std::vector<double> friction_of_contacts() const;
 
@@ -62,7 +66,8 @@ class ImplicitDynamics {
   OutlineNeighbours neighbours_;
   std::vector<BatchedCholesky> matrix_;
   std::vector<OutlineCompliance> compliance_;
-  std::vector<WideVectors> start_, velocity_start_, right_, force_;  // per batch
+  std::vector<WideVectors> start_, velocity_start_, half_solved_, force_;  // per batch
+  WideVectors kept_;                                                       // of one batch's outlines
   std::vector<Vec<2>> outline_increment_;
   OutlineState outline_;
   std::vector<Wall<2>> walls_start_;

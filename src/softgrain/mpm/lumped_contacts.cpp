@@ -9,7 +9,7 @@ LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, std::sp
     double W = inverse_mass[c.vertex];
     if (c.wall < 0) {
       const auto weight = c.weights();
-      for (int m = 0; m < 2; ++m) W += weight[m] * weight[m] * inverse_mass[c.master[m]];
+      for (std::size_t m = 0; m < 4; ++m) W += weight[m] * weight[m] * inverse_mass[c.master[m]];
     }
     delassus_.push_back(W);
     offset_.push_back(c.gap / dt - dot(c.normal, velocity_between(c)));
@@ -22,7 +22,7 @@ Vec<2> LumpedContacts::velocity_between(const OutlineContact& c) const {
     u -= walls_[c.wall].velocity;
   } else {
     const auto weight = c.weights();
-    for (int m = 0; m < 2; ++m) u -= weight[m] * velocity_[c.master[m]];
+    for (std::size_t m = 0; m < 4; ++m) u -= weight[m] * velocity_[c.master[m]];
   }
   return u;
 }
@@ -35,11 +35,11 @@ Vec<2> LumpedContacts::relative_velocity(int contact) const {
 
 void LumpedContacts::apply_impulse(int contact, const Vec<2>& dp) {
   const OutlineContact& c = contacts_[contact];
-  const Vec<2> P = dp[0] * c.normal + dp[1] * perpendicular(c.normal);
+  const Vec<2> P = impulse_vector(c, dp);
   velocity_[c.vertex] += inverse_mass_[c.vertex] * P;
   if (c.wall >= 0) return;
   const auto weight = c.weights();
-  for (int m = 0; m < 2; ++m) velocity_[c.master[m]] -= weight[m] * inverse_mass_[c.master[m]] * P;
+  for (std::size_t m = 0; m < 4; ++m) velocity_[c.master[m]] -= weight[m] * inverse_mass_[c.master[m]] * P;
 }
 
 }  // namespace softgrain

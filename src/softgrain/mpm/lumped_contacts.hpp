@@ -8,7 +8,7 @@
 namespace softgrain {
 
 /// Contacts of explicit grains as a ContactSystem: the outline's lumped masses answer at once,
-///   u = v_slave - (1 - xi) v_0 - xi v_1,   W = (1/m_slave + (1 - xi)^2/m_0 + xi^2/m_1) 1,
+///   u = v_slave - sum_k w_k v_k,   W = (1/m_slave + sum_k w_k^2/m_k) 1,
 /// with u_n changed to the gap at the end of the step over dt, (g + dt n . (u - u_found))/dt, where u_found
 /// had brought the outlines to where the contacts were found.
 class LumpedContacts {

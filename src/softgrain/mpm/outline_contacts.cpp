@@ -11,8 +11,6 @@
 namespace softgrain {
 namespace {
 
-constexpr int smoothing_passes = 2;
-
 // In units of the mean segment: contacts are kept up to this gap, and candidates until a vertex moved half
 // the skin.
 constexpr double margin_share = 0.5;
@@ -34,54 +32,72 @@ double segment_length(const SoftGrains& grains, int grain) {
          (grains.outline_end(grain) - grains.outline_begin(grain));
 }
 
-bool is_slave(const SoftGrains& grains, int grain, int other) {
-  return std::tuple{segment_length(grains, grain), grain} < std::tuple{segment_length(grains, other), other};
-}
-
 /// The vertex of each nearby master grain that is closest to a slave vertex.
 struct Nearest {
   int grain, vertex;
   double distance_squared;
 };
 
-/// The closer of the two segments that meet at the master's nearest vertex.
-OutlineContact facing_segment(const SoftGrains& grains, const OutlineState& state,
-                              std::span<const Vec<2>> normals, int slave, int nearest) {
-  const Vec<2>& x = state.position[slave];
-  OutlineContact contact{.vertex = slave};
-  double closest = std::numeric_limits<double>::infinity();
-  const std::array<std::array<int, 2>, 2> segments{std::array{previous_vertex(grains, nearest), nearest},
-                                                   std::array{nearest, next_vertex(grains, nearest)}};
-  for (const auto& segment : segments) {
-    const Vec<2>& a = state.position[segment[0]];
-    const Vec<2> along = state.position[segment[1]] - a;
-    const double share = std::clamp(dot(x - a, along) / dot(along, along), 0.0, 1.0);
-    const Vec<2> d = x - (a + share * along);
-    if (dot(d, d) < closest) {
-      closest = dot(d, d);
-      contact.master = segment;
-      contact.share = share;
+/// The span of an outline that starts at vertex `first`: it, the next one, and the neighbours of both.
+std::array<int, 4> span_from(const SoftGrains& grains, int first) {
+  const int second = next_vertex(grains, first);
+  return {previous_vertex(grains, first), first, second, next_vertex(grains, second)};
+}
+
+/// Point of an outline and its derivatives by xi.
+struct CurvePoint {
+  CurvePoint(std::span<const Vec<2>> position, const std::array<int, 4>& vertices, double xi) {
+    const CurveWeights w = curve_weights(xi);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Vec<2>& x = position[vertices[k]];
+      place += w.value[k] * x;
+      tangent += w.slope[k] * x;
+      second += w.curvature[k] * x;
     }
   }
-  const auto [w0, w1] = contact.weights();
-  const auto [m0, m1] = contact.master;
-  const Vec<2> n = w0 * normals[m0] + w1 * normals[m1];
-  contact.normal = (1 / norm(n)) * n;
-  contact.gap = dot(x - (w0 * state.position[m0] + w1 * state.position[m1]), contact.normal);
-  const Vec<2> moved = (x - state.start[slave]) - (w0 * (state.position[m0] - state.start[m0]) +
-                                                   w1 * (state.position[m1] - state.start[m1]));
-  contact.slip = dot(perpendicular(contact.normal), moved);
+  Vec<2> place, tangent, second;
+};
+
+/// Where a curve is closest to x near xi, by Newton's method on (x - c) . c' = 0; may leave [0, 1].
+double closest_share(std::span<const Vec<2>> position, const std::array<int, 4>& vertices, const Vec<2>& x,
+                     double xi) {
+  for (int pass = 0; pass < 8; ++pass) {
+    const CurvePoint c(position, vertices, xi);
+    const Vec<2> d = x - c.place;
+    const double square = dot(c.tangent, c.tangent);
+    const double step = dot(d, c.tangent) / std::max(square - dot(d, c.second), square / 2);
+    xi = std::clamp(xi + step, -0.5, 1.5);
+    if (std::abs(step) < 1e-13) break;
+  }
+  return xi;
+}
+
+/// The place of the master's outline, near its vertex `nearest`, that a slave faces.
+OutlineContact facing_curve(const SoftGrains& grains, const OutlineState& state, int slave, int nearest) {
+  const Vec<2>& x = state.position[slave];
+  OutlineContact contact{.vertex = slave, .master = span_from(grains, nearest)};
+  contact.share = closest_share(state.position, contact.master, x, 0);
+  if (contact.share < 0) {
+    contact.master = span_from(grains, previous_vertex(grains, nearest));
+    contact.share = closest_share(state.position, contact.master, x, 1);
+  }
+  contact.share = std::clamp(contact.share, 0.0, 1.0);
+  const CurvePoint c(state.position, contact.master, contact.share);
+  contact.normal =
+      (-1 / norm(c.tangent)) * perpendicular(c.tangent);  // outward of a counter-clockwise outline
+  contact.gap = dot(x - c.place, contact.normal);
+  contact.slip = dot(perpendicular(contact.normal), relative_displacement(contact, state));
   return contact;
 }
 
 OutlineContact wall_contact(const OutlineState& state, int slave, int wall_index) {
   const Wall<2>& wall = state.walls[wall_index];
-  const Vec<2> moved = state.position[slave] - state.start[slave] - state.dt * wall.velocity;
-  return {.vertex = slave,
-          .wall = wall_index,
-          .normal = wall.normal,
-          .gap = dot(state.position[slave] - wall.point, wall.normal),
-          .slip = dot(perpendicular(wall.normal), moved)};
+  OutlineContact contact{.vertex = slave,
+                         .wall = wall_index,
+                         .normal = wall.normal,
+                         .gap = dot(state.position[slave] - wall.point, wall.normal)};
+  contact.slip = dot(perpendicular(wall.normal), relative_displacement(contact, state));
+  return contact;
 }
 
 /// The vertex of a master's outline nearest to `slave`, walking downhill from `start`.
@@ -108,21 +124,11 @@ std::tuple<int, int, int> identity(const SoftGrains& grains, const OutlineContac
 
 }  // namespace
 
-std::vector<Vec<2>> smoothed_normals(const SoftGrains& grains, std::span<const Vec<2>> position) {
-  std::vector<Vec<2>> normals(position.size()), raw(position.size());
-  const int n = static_cast<int>(position.size());
-  for (int v = 0; v < n; ++v) {
-    const Vec<2> chord = position[next_vertex(grains, v)] - position[previous_vertex(grains, v)];
-    normals[v] = (-1 / norm(chord)) * perpendicular(chord);  // outward of a counter-clockwise outline
-  }
-  for (int pass = 0; pass < smoothing_passes; ++pass) {
-    raw = normals;
-    for (int v = 0; v < n; ++v) {
-      const Vec<2> sum = raw[previous_vertex(grains, v)] + 2 * raw[v] + raw[next_vertex(grains, v)];
-      normals[v] = (1 / norm(sum)) * sum;
-    }
-  }
-  return normals;
+CurveWeights curve_weights(double xi) {
+  const double a = xi * xi, b = a * xi;
+  return {{-xi / 2 + a - b / 2, 1 - 2.5 * a + 1.5 * b, xi / 2 + 2 * a - 1.5 * b, (b - a) / 2},
+          {-0.5 + 2 * xi - 1.5 * a, -5 * xi + 4.5 * a, 0.5 + 4 * xi - 4.5 * a, 1.5 * a - xi},
+          {2 - 3 * xi, -5 + 9 * xi, 4 - 9 * xi, 3 * xi - 1}};
 }
 
 bool OutlineNeighbours::moved_far(const SoftGrains& grains, const OutlineState& state) const {
@@ -151,7 +157,7 @@ void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineS
     near.clear();
     grid.for_each_neighbour(v, [&](int w) {
       const int other = grains.grain_of_vertex(w);
-      if (other == grain || !is_slave(grains, grain, other)) return;
+      if (other == grain) return;
       const Vec<2> d = state.position[w] - state.position[v];
       const double distance_squared = dot(d, d);
       if (distance_squared > reach * reach) return;
@@ -170,7 +176,6 @@ void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineS
 std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, const OutlineState& state) {
   if (moved_far(grains, state)) find_candidates(grains, state);
   const double margin = margin_share * segment_;
-  const std::vector<Vec<2>> normals = smoothed_normals(grains, state.position);
   std::vector<OutlineContact> contacts;
   auto candidate = candidates_.begin();
   for (int v = 0; v < grains.outline_size(); ++v) {
@@ -183,20 +188,28 @@ std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, 
       candidate->nearest = nearest_vertex(grains, state.position, v, candidate->nearest);
       const Vec<2> d = state.position[v] - state.position[candidate->nearest];
       if (dot(d, d) > 9 * segment_ * segment_) continue;
-      const OutlineContact contact = facing_segment(grains, state, normals, v, candidate->nearest);
+      const OutlineContact contact = facing_curve(grains, state, v, candidate->nearest);
       if (contact.gap < margin) contacts.push_back(contact);
     }
   }
   return contacts;
 }
 
+Vec<2> relative_displacement(const OutlineContact& contact, const OutlineState& state) {
+  const auto moved = [&](int vertex) { return state.position[vertex] - state.start[vertex]; };
+  if (contact.wall >= 0) return moved(contact.vertex) - state.dt * state.walls[contact.wall].velocity;
+  const auto weight = contact.weights();
+  Vec<2> displacement = moved(contact.vertex);
+  for (std::size_t k = 0; k < 4; ++k) displacement -= weight[k] * moved(contact.master[k]);
+  return displacement;
+}
+
 double gap_now(const OutlineContact& contact, const OutlineState& state) {
   const Vec<2>& x = state.position[contact.vertex];
   if (contact.wall >= 0) return dot(x - state.walls[contact.wall].point, contact.normal);
-  const Vec<2>& a = state.position[contact.master[0]];
-  const Vec<2> along = state.position[contact.master[1]] - a;
-  const double share = std::clamp(dot(x - a, along) / dot(along, along), 0.0, 1.0);
-  return dot(x - (a + share * along), contact.normal);
+  const CurvePoint c(state.position, contact.master,
+                     closest_share(state.position, contact.master, x, contact.share));
+  return -dot(x - c.place, perpendicular(c.tangent)) / norm(c.tangent);
 }
 
 std::vector<Vec<2>> carried_impulses(const SoftGrains& grains, std::span<const OutlineContact> old,

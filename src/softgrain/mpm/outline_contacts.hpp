@@ -8,19 +8,27 @@
 
 namespace softgrain {
 
-/// An outline vertex against a segment of another grain's outline, or against a wall. The finer grain's
-/// vertices are the slaves (ties by index), so that a pair never changes its roles.
+/// The outline of a grain is the smooth closed curve through its vertices (uniform Catmull-Rom): between x_1
+/// and x_2, with their neighbours x_0 and x_3 along the outline,
+///   c(xi) = sum_k w_k(xi) x_k,  xi in [0, 1].
+struct CurveWeights {
+  std::array<double, 4> value, slope, curvature;  ///< w_k, dw_k/dxi, d^2w_k/dxi^2
+};
+CurveWeights curve_weights(double xi);
+
+/// An outline vertex (the slave) against another grain's outline (the master), or against a wall. Both grains
+/// of a pair bring their vertices, so that neither outline sinks between the vertices of the other.
 struct OutlineContact {
   int vertex = 0;               ///< the slave
   int wall = -1;                ///< or -1
-  std::array<int, 2> master{};  ///< ends of the master's segment, unless a wall
-  double share = 0;             ///< xi: the vertex faces (1 - xi) x_0 + xi x_1
-  Vec<2> normal{};  ///< unit, from the master to the slave: interpolated from smoothed vertex normals
-  double gap = 0;   ///< g = (x_slave - x_master) . n [m], open > 0
+  std::array<int, 4> master{};  ///< vertices x_0 .. x_3 of the curve that it faces, unless a wall
+  double share = 0;             ///< xi: the slave faces c(xi)
+  Vec<2> normal{};              ///< unit, from the master to the slave: the gradient of the gap
+  double gap = 0;               ///< g = (x_slave - c) . n [m], open > 0
   double slip = 0;  ///< tangential displacement of slave against master since the start of the step [m]
 
-  /// Weights of the two master vertices.
-  std::array<double, 2> weights() const { return {1 - share, share}; }
+  /// Weights of the master's vertices.
+  std::array<double, 4> weights() const { return curve_weights(share).value; }
 };
 
 /// Where the outlines are, and where they were at the start of the step.
@@ -51,16 +59,20 @@ class OutlineNeighbours {
   double segment_ = 0;                 // mean length of a segment of the round grains [m]
 };
 
-/// Gap of a contact when its bodies have moved a little since it was found: the vertex faces the same edge or
-/// wall, at another place of it [m].
+/// Gap of a contact when its bodies have moved a little since it was found [m].
 double gap_now(const OutlineContact& contact, const OutlineState& state);
+
+/// p_n n + p_t t [N s/m], on the slave.
+inline Vec<2> impulse_vector(const OutlineContact& contact, const Vec<2>& impulse) {
+  return impulse[0] * contact.normal + impulse[1] * perpendicular(contact.normal);
+}
+
+/// Displacement of the slave since the start of the step, less that of the place it faces [m].
+Vec<2> relative_displacement(const OutlineContact& contact, const OutlineState& state);
 
 /// Impulses of `old` contacts [N s/m], given to the new contacts of the same vertex and master grain or wall.
 std::vector<Vec<2>> carried_impulses(const SoftGrains& grains, std::span<const OutlineContact> old,
                                      std::span<const Vec<2>> old_impulse,
                                      std::span<const OutlineContact> contacts);
-
-/// Outward unit normals of all outline vertices, smoothed along each outline.
-std::vector<Vec<2>> smoothed_normals(const SoftGrains& grains, std::span<const Vec<2>> position);
 
 }  // namespace softgrain

@@ -95,6 +95,31 @@ TEST_CASE("eight different matrices are factored and solved at once as Eigen doe
   }
 }
 
+TEST_CASE("a solve in two halves takes more on the kept nodes in between") {
+  test::RandomNumbers random(13);
+  const int nodes = 30, kept = 7;
+  const Edges edges = random_graph(nodes, nodes, random);
+  const BlockPattern pattern(nodes, edges, kept);
+  EightMatrices A(pattern, edges, random);
+  REQUIRE(A.lanes.factor() == 0);
+  std::vector<Wide> b(2 * nodes), y(2 * nodes), d(2 * kept), h(2 * kept), x(2 * nodes);
+  for (auto* values : {&b, &h})
+    for (Wide& value : *values)
+      for (int lane = 0; lane < Wide::size; ++lane) value.set(lane, random.uniform(-1, 1));
+  A.lanes.begin_solve(b, y, d);
+  A.lanes.finish_solve(y, h, x);
+  for (int lane = 0; lane < Wide::size; ++lane) {
+    Eigen::VectorXd right(2 * nodes), more = Eigen::VectorXd::Zero(2 * nodes);
+    for (int i = 0; i < 2 * nodes; ++i) right[i] = b[i][lane];
+    for (int i = 0; i < 2 * kept; ++i) more[2 * (nodes - kept) + i] = h[i][lane];
+    const auto inverse = A.dense[lane].llt();
+    const Eigen::VectorXd first = inverse.solve(right), both = inverse.solve(right + more);
+    for (int i = 0; i < 2 * kept; ++i)
+      CHECK(d[i][lane] == doctest::Approx(first[2 * (nodes - kept) + i]).epsilon(1e-12));
+    for (int i = 0; i < 2 * nodes; ++i) CHECK(x[i][lane] == doctest::Approx(both[i]).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("the compliance of the kept nodes is the corner of the inverse matrix") {
   test::RandomNumbers random(12);
   const int nodes = 30, kept = 12;

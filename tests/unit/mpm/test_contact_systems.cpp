@@ -47,8 +47,8 @@ Eigen::MatrixXd contact_map(const Scenery& s) {
       for (int d = 0; d < 2; ++d) {
         H(2 * contact.vertex + d, 2 * c + k) += axis[k][d];
         if (contact.wall >= 0) continue;
-        H(2 * contact.master[0] + d, 2 * c + k) -= (1 - contact.share) * axis[k][d];
-        H(2 * contact.master[1] + d, 2 * c + k) -= contact.share * axis[k][d];
+        for (std::size_t m = 0; m < 4; ++m)
+          H(2 * contact.master[m] + d, 2 * c + k) -= contact.weights()[m] * axis[k][d];
       }
   }
   return H;

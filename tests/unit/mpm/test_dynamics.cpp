@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/mpm/equilibrium.hpp"
 #include "softgrain/mpm/explicit_step.hpp"
 #include "softgrain/mpm/implicit_step.hpp"
 #include "support/soft_grains.hpp"
@@ -39,7 +40,7 @@ void check_collision(Dynamics dynamics, double dt, int steps, double momentum_er
   const double spin = angular_momentum(dynamics.grains), energy = dynamics.grains.kinetic_energy();
   int most_contacts = 0;
   for (int k = 0; k < steps; ++k) most_contacts = std::max(most_contacts, dynamics.step(dt).contacts);
-  CHECK(most_contacts >= 2);
+  CHECK(most_contacts >= 1);
   CHECK(dynamics.grains.kinetic_energy() < 0.95 * energy);
   CHECK(norm(dynamics.grains.momentum() - start) < momentum_error * norm(start));
   // positions move after forces have acted: angular momentum drifts with dt only
@@ -48,11 +49,8 @@ void check_collision(Dynamics dynamics, double dt, int steps, double momentum_er
 
 }  // namespace
 
-// The proximal term of Newton's matrix takes its share of the last correction.
-TEST_CASE("grains that collide implicitly keep their momentum to the tolerance of Newton's method") {
-  check_collision(ImplicitDynamics(colliding_pair(), {}, {.tolerance = 1e-10, .friction = 0.3}), 1e-6, 40,
-                  1e-11);
-  check_collision(ImplicitDynamics(colliding_pair(), {}, {.friction = 0.3}), 1e-6, 40, 1e-6);
+TEST_CASE("grains that collide keep their momentum to round-off, implicitly") {
+  check_collision(ImplicitDynamics(colliding_pair(), {}, {.friction = 0.3}), 1e-6, 40, 1e-13);
 }
 
 TEST_CASE("grains that collide keep their momentum to round-off, explicitly") {
@@ -91,9 +89,37 @@ TEST_CASE("the walls take the momentum that a grain loses") {
   const SoftGrains grains({test::placed(test::disk(4), 1e-3, {0, 1.003e-3}, {1, -2})},
                           make_law("neo_hookean", 1e7, 0.3), 1000, false);
   const double dt = stable_time_step(grains);
-  check(ImplicitDynamics(grains, {test::floor_at(0)}, {.tolerance = 1e-10, .wall_friction = 0.3}), 1e-6, 60);
+  check(ImplicitDynamics(grains, {test::floor_at(0)}, {.wall_friction = 0.3}), 1e-6, 60);
   check(ExplicitDynamics(grains, {test::floor_at(0)}, {.wall_friction = 0.3}), dt,
         static_cast<int>(6e-5 / dt));
+}
+
+TEST_CASE(
+    "work closes: what walls and gravity give is kinetic, internal, taken by contacts, or by the step") {
+  const auto check = [](auto dynamics, double dt, int steps, double tolerance) {
+    const double start = dynamics.grains.kinetic_energy();
+    for (int k = 0; k < steps; ++k) dynamics.step(dt);
+    const WorkBudget& w = dynamics.work;
+    const double given = w.walls + w.gravity;
+    CHECK(w.walls > 0.2 * given);
+    CHECK(std::abs(w.gravity) > 0.01 * given);
+    CHECK(w.contacts > 0.01 * given);
+    const double taken = dynamics.grains.kinetic_energy() - start + w.internal + w.contacts + w.inertia;
+    CHECK(std::abs(given - taken) < tolerance * given);
+    // and the internal work is the elastic energy, but for what integration takes of it
+    const double elastic = elastic_energy(dynamics.grains, dynamics.grains.batches[0])[0];
+    CHECK(elastic == doctest::Approx(w.internal).epsilon(0.1));
+  };
+  const SoftGrains grains({test::placed(test::disk(4), 1e-3, {0, 1.014e-3}, {0.5, 0})},
+                          make_law("neo_hookean", 1e6, 0.3), 1000, false);
+  const std::vector<Wall<2>> plates{test::floor_at(0),
+                                    {.point = {0, 2.028e-3}, .normal = {0, -1}, .velocity = {0, -1}}};
+  const double dt = stable_time_step(grains);
+  const Vec<2> gravity{0, -3000};
+  check(ImplicitDynamics(grains, plates, {.tolerance = 1e-7, .wall_friction = 0.3, .gravity = gravity}), 2e-6,
+        100, 1e-4);
+  check(ExplicitDynamics(grains, plates, {.wall_friction = 0.3, .gravity = gravity}), dt,
+        static_cast<int>(2e-4 / dt), 1e-11);
 }
 
 TEST_CASE("a step that is too long for Newton's method is halved, and the walls end where it should") {
