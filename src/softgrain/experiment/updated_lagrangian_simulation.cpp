@@ -136,6 +136,13 @@ Scene UpdatedLagrangianSimulation::scene() const {
     stress.push_back(dynamics_.stress(0, p));
     pressure.push_back(-trace(stress.back()) / 2);
   }
+  std::vector<Vec<2>> force(grain().outline.size());  // zero for contact on nodes
+  for (std::size_t c = 0; c < dynamics_.contacts.size(); ++c) {
+    const LatticeContact& contact = dynamics_.contacts[c];
+    const Vec<2>& n = contact.normal;
+    const Vec<2>& p = dynamics_.impulse[c];
+    if (contact.vertex >= 0) force[contact.vertex] += 1 / dt_ * (p[0] * n + p[1] * perpendicular(n));
+  }
   Scene scene;
   scene.particles["position"] = to_array<2>(grain().position);
   scene.particles["radius"] = {1, std::move(radius)};
@@ -144,6 +151,7 @@ Scene UpdatedLagrangianSimulation::scene() const {
   scene.particles["stress"] = to_array<4>(components(stress));
   scene.particles["grain"] = {1, std::vector<std::int64_t>(grain().position.size(), 0)};
   scene.outlines["position"] = to_array<2>(grain().outline);
+  scene.outlines["force"] = to_array<2>(force);
   scene.outlines["grain"] = {1, std::vector<std::int64_t>(grain().outline.size(), 0)};
   const auto [left, right] = extent(grain());
   const double margin = 0.1 * (right - left);

@@ -13,7 +13,7 @@ namespace {
 
 /// Smallest mass of a node that has a share in the outline, or in contacts on nodes, over that of a full
 /// cell. With lighter nodes a vertex would throw the points beside them about.
-constexpr double least_outline_share = 1e-2, least_node_share = 1e-5;
+constexpr double least_outline_share = 1e-3, least_node_share = 1e-5;
 
 }  // namespace
 
@@ -168,7 +168,10 @@ void UpdatedLagrangianDynamics::move_outlines(double dt) {
 }
 
 SoftStepReport UpdatedLagrangianDynamics::report_of(const SolverReport& solved) {
-  SoftStepReport report{.iterations = 1, .sweeps = solved.sweeps, .converged = solved.converged};
+  SoftStepReport report{.iterations = 1,
+                        .sweeps = solved.sweeps,
+                        .residual = solved.residual_mean,
+                        .converged = solved.converged};
   std::fill(wall_impulse_.begin(), wall_impulse_.end(), Vec<2>{});
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const LatticeContact& contact = contacts[c];

@@ -99,6 +99,13 @@ TEST_CASE(
   CHECK(mean > 0);
   CHECK(std::get<std::vector<double>>(scene.outlines.at("position").values).size() == 2 * 8 * 4);
   CHECK(scene.wall_segments.size() == 8);
+  // the top half is pushed down, the bottom half up
+  const auto& x = std::get<std::vector<double>>(scene.outlines.at("position").values);
+  const auto& force = std::get<std::vector<double>>(scene.outlines.at("force").values);
+  double top = 0, bottom = 0;
+  for (std::size_t k = 1; k < x.size(); k += 2) (x[k] > 0 ? top : bottom) += force[k];
+  CHECK(top < 0);
+  CHECK(bottom > 0);
 }
 
 TEST_CASE("the updated Lagrangian takes one grain between plates only, and known words") {
