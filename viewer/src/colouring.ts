@@ -20,12 +20,19 @@ export function colourOf(colouring: Colouring, value: number): Rgb {
   return map === "categories" ? categoryColour(value) : colourAt(map, (value - low) / (high - low || 1));
 }
 
+/** A hue that the colours of the grains do not have. */
+export function chainColour(colouring: Colouring | null): Rgb {
+  return colouring?.map === "PuOr" ? [0, 128, 106] : [230, 41, 71];
+}
+
 /** What this run has the data for. */
 export function colourings(run: Run): Colouring[] {
   const found: Colouring[] = [];
   const pressure = run.has("particle.pressure") ? "particle" : "grain";
   if (run.has(`${pressure}.pressure`))
-    found.push(ranged(run, "pressure", "pressure", "Pa", pressure, (k) => run.column(`${pressure}.pressure`, k)));
+    found.push(
+      ranged(run, "pressure", "pressure", "Pa", pressure, (k) => run.column(`${pressure}.pressure`, k)),
+    );
   if (run.has("grain.area"))
     found.push(ranged(run, "area", "change of area", "%", "grain", (k) => areaChange(run, k)));
   if (run.has("particle.coordination"))
@@ -63,18 +70,30 @@ export function contactsOfGrains(run: Run, frame: number): Float32Array {
 type Values = (frame: number) => Float32Array;
 
 /** From 0, or symmetric about it where both signs are common; without the outermost 3 %. */
-function ranged(run: Run, key: string, label: string, unit: string, on: "grain" | "particle", values: Values): Colouring {
+function ranged(
+  run: Run,
+  key: string,
+  label: string,
+  unit: string,
+  on: "grain" | "particle",
+  values: Values,
+): Colouring {
   const all = run.sample(12).flatMap((k) => [...thinned(values(k))]);
   const low = Math.min(0, quantile(all, 0.03));
   const high = Math.max(0, quantile(all, 0.97));
   const common = { key, label, unit, on, values };
   const reach = Math.max(-low, high) || 1;
   if (Math.min(-low, high) > 0.1 * reach) return { ...common, map: "PuOr", low: -reach, high: reach };
-  return high >= -low ? { ...common, map: "cividis", low: 0, high: reach } : { ...common, map: "cividis", low: -reach, high: 0 };
+  return high >= -low
+    ? { ...common, map: "cividis", low: 0, high: reach }
+    : { ...common, map: "cividis", low: -reach, high: 0 };
 }
 
 function counted(run: Run, on: "grain" | "particle", values: Values): Colouring {
-  const most = Math.max(1, ...run.sample(12).map((k) => thinned(values(k)).reduce((m, v) => Math.max(m, v), 0)));
+  const most = Math.max(
+    1,
+    ...run.sample(12).map((k) => thinned(values(k)).reduce((m, v) => Math.max(m, v), 0)),
+  );
   return { key: "contacts", label: "contacts", unit: "", on, map: "viridis", low: 0, high: most, values };
 }
 

@@ -4,8 +4,7 @@ const MAPS = {
     "44015448186a472d7b4240863b528b33638d2c728e26828e21918c1fa08828ae803fbc735ec96284d44baddc30d8e219fde725",
   cividis:
     "00224e002e6a1a386f32436d434e6c535a6d61656f6f70737d7c788c88789b9476aba072bcae6ccdbb63dec958f0d846fee838",
-  PuOr:
-    "2d004b4518715f3a917b6aa89990bfb7b1d5cfcfe5e4e5f0f7f7f6fce8cdfed59ffdbc6bee9b39d97b12bd61099e4c077f3b08",
+  PuOr: "2d004b4518715f3a917b6aa89990bfb7b1d5cfcfe5e4e5f0f7f7f6fce8cdfed59ffdbc6bee9b39d97b12bd61099e4c077f3b08",
 };
 export type MapName = keyof typeof MAPS;
 export type Rgb = [number, number, number];
@@ -30,7 +29,16 @@ export function categoryColour(index: number): Rgb {
 }
 
 /** For curves of several runs: distinct for the colour-blind, on light and on dark. */
-export const RUN_COLOURS = ["#3b7dd8", "#e07b26", "#2a9d72", "#b05cc6", "#c8991a", "#d1495b", "#5c6f82", "#2aa6b8"];
+export const RUN_COLOURS = [
+  "#3b7dd8",
+  "#e07b26",
+  "#2a9d72",
+  "#b05cc6",
+  "#c8991a",
+  "#d1495b",
+  "#5c6f82",
+  "#2aa6b8",
+];
 export const runColour = (index: number): string => RUN_COLOURS[index % RUN_COLOURS.length];
 
 export function css([r, g, b]: Rgb): string {

@@ -4,16 +4,24 @@ export class Program {
   readonly handle: WebGLProgram;
   private uniforms = new Map<string, WebGLUniformLocation | null>();
 
-  constructor(private gl: WebGL2RenderingContext, vertex: string, fragment: string) {
+  constructor(
+    private gl: WebGL2RenderingContext,
+    vertex: string,
+    fragment: string,
+  ) {
     this.handle = gl.createProgram()!;
-    for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]] as const) {
+    for (const [type, source] of [
+      [gl.VERTEX_SHADER, vertex],
+      [gl.FRAGMENT_SHADER, fragment],
+    ] as const) {
       const shader = gl.createShader(type)!;
       gl.shaderSource(shader, "#version 300 es\nprecision highp float;\n" + source);
       gl.compileShader(shader);
       gl.attachShader(this.handle, shader);
     }
     gl.linkProgram(this.handle);
-    if (!gl.getProgramParameter(this.handle, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(this.handle) ?? "");
+    if (!gl.getProgramParameter(this.handle, gl.LINK_STATUS))
+      throw new Error(gl.getProgramInfoLog(this.handle) ?? "");
   }
 
   set(name: string, ...values: number[]): void {
@@ -30,7 +38,11 @@ export class Buffer {
   private data: WebGLBuffer;
   private bytes = 0;
 
-  constructor(private gl: WebGL2RenderingContext, sizes: number[], perInstance = false) {
+  constructor(
+    private gl: WebGL2RenderingContext,
+    sizes: number[],
+    perInstance = false,
+  ) {
     this.array = gl.createVertexArray()!;
     this.data = gl.createBuffer()!;
     gl.bindVertexArray(this.array);
@@ -56,5 +68,34 @@ export class Buffer {
 
   bind(): void {
     this.gl.bindVertexArray(this.array);
+  }
+}
+
+/** A picture that is not shown; while it is bound as a texture, shaders read its pixels. */
+export class Offscreen {
+  private frame: WebGLFramebuffer;
+  private texture: WebGLTexture;
+
+  constructor(private gl: WebGL2RenderingContext) {
+    this.frame = gl.createFramebuffer()!;
+    this.texture = gl.createTexture()!;
+  }
+
+  /** What is drawn from now on goes here, without blending. */
+  begin(width: number, height: number): void {
+    const { gl } = this;
+    gl.bindTexture(gl.TEXTURE_2D, this.texture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.frame);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.texture, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+    gl.disable(gl.BLEND);
+  }
+
+  end(): void {
+    this.gl.bindFramebuffer(this.gl.FRAMEBUFFER, null);
+    this.gl.enable(this.gl.BLEND);
   }
 }

@@ -1,5 +1,5 @@
 import { Colouring } from "./colouring";
-import { css, categoryColour, gradient } from "./colours";
+import { categoryColour, css, gradient, Rgb } from "./colours";
 import { ForceScale } from "./picture";
 import { scaleFor, short, withUnit } from "./units";
 
@@ -29,11 +29,17 @@ export function showLegend(parent: HTMLElement, colouring: Colouring | null): vo
 }
 
 /** A line as wide as the force that stands beside it. */
-export function showForceKey(parent: HTMLElement, scale: ForceScale | null, pixelsPerMetre: number): void {
+export function showForceKey(
+  parent: HTMLElement,
+  scale: ForceScale | null,
+  pixelsPerMetre: number,
+  colour: Rgb,
+): void {
   parent.replaceChildren();
   if (!scale) return;
   const force = Number((scale.force / 2).toPrecision(1));
   const line = document.createElement("i");
+  line.style.background = css(colour);
   line.style.height = `${Math.max(1, (scale.width * pixelsPerMetre * force) / scale.force)}px`;
   parent.append(line, text(`contact force ${withUnit(force, "N/m")}`));
 }

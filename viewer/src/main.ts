@@ -1,5 +1,5 @@
 // The page: state, and what happens when it changes.
-import { Colouring, colourings } from "./colouring";
+import { chainColour, Colouring, colourings } from "./colouring";
 import { runColour } from "./colours";
 import { onKey } from "./keys";
 import { showForceKey, showLegend } from "./legend";
@@ -14,7 +14,9 @@ import { short, withUnit } from "./units";
 
 const $ = <T extends HTMLElement = HTMLElement>(selector: string) => document.querySelector<T>(selector)!;
 const [slider, play, select, chains] = [
-  $<HTMLInputElement>(".slider"), $<HTMLButtonElement>(".play"), $<HTMLSelectElement>(".colouring"),
+  $<HTMLInputElement>(".slider"),
+  $<HTMLButtonElement>(".play"),
+  $<HTMLSelectElement>(".colouring"),
   $<HTMLInputElement>(".chains input"),
 ];
 
@@ -54,13 +56,25 @@ class Page {
     $(".theme").addEventListener("click", () => this.toggleTheme());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.themeChanged());
     document.addEventListener("keydown", (event) =>
-      onKey(event, { frame: this.frame, frames: this.run.frames, seek: (k) => this.seek(k), play: () => this.togglePlay() }));
+      onKey(event, {
+        frame: this.frame,
+        frames: this.run.frames,
+        seek: (k) => this.seek(k),
+        play: () => this.togglePlay(),
+      }),
+    );
     if (!this.renderer) return;
     new ResizeObserver(() => this.draw()).observe($(".stage"));
-    new Pointer($<HTMLCanvasElement>("canvas"), $(".tip"), this.renderer, () => this.frame, (grain) => {
-      this.highlight = grain;
-      this.draw();
-    });
+    new Pointer(
+      $<HTMLCanvasElement>("canvas"),
+      $(".tip"),
+      this.renderer,
+      () => this.frame,
+      (grain) => {
+        this.highlight = grain;
+        this.draw();
+      },
+    );
   }
 
   private showRunChooser(): void {
@@ -80,13 +94,18 @@ class Page {
     const share = this.frame / Math.max(1, this.run.frames - 1);
     this.shown = index;
     this.highlight = -1;
-    document.querySelectorAll(".runs button").forEach((b, k) => b.setAttribute("aria-checked", String(k === index)));
+    document
+      .querySelectorAll(".runs button")
+      .forEach((b, k) => b.setAttribute("aria-checked", String(k === index)));
     $(".summary").textContent = summary(this.run);
     const before = select.value;
     this.choices = colourings(this.run);
     select.replaceChildren(...this.choices.map((c) => new Option(c.label, c.key, false, c.key === before)));
     this.renderer?.show(this.run);
-    $(".stage").style.setProperty("--aspect", String(Math.min(1.6, Math.max(0.75, this.renderer?.aspect ?? 1))));
+    $(".stage").style.setProperty(
+      "--aspect",
+      String(Math.min(1.6, Math.max(0.75, this.renderer?.aspect ?? 1))),
+    );
     $(".chains").hidden = !this.renderer?.forceScale;
     slider.max = String(this.run.frames - 1);
     this.seek(Math.round(share * (this.run.frames - 1)));
@@ -125,8 +144,12 @@ class Page {
     const colouring = this.choices.find((choice) => choice.key === select.value) ?? null;
     this.renderer.draw(this.frame, { colouring, chains: chains.checked, highlight: this.highlight });
     showLegend($(".legend"), colouring);
-    showForceKey($(".force"), chains.checked ? this.renderer.forceScale : null, this.renderer.pixelsPerMetre);
-    $("canvas").setAttribute("aria-label", `Packing of ${this.run.name}, ${this.now()}, coloured by ${colouring?.label ?? "nothing"}`);
+    const forceScale = chains.checked ? this.renderer.forceScale : null;
+    showForceKey($(".force"), forceScale, this.renderer.pixelsPerMetre, chainColour(colouring));
+    $("canvas").setAttribute(
+      "aria-label",
+      `Packing of ${this.run.name}, ${this.now()}, coloured by ${colouring?.label ?? "nothing"}`,
+    );
     document.body.dataset.drawn = String(this.frame);
   }
 
@@ -154,7 +177,9 @@ class Page {
 
   private toggleTheme(): void {
     const root = document.documentElement;
-    const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+    const dark = root.dataset.theme
+      ? root.dataset.theme === "dark"
+      : matchMedia("(prefers-color-scheme: dark)").matches;
     root.dataset.theme = dark ? "light" : "dark";
     this.themeChanged();
   }
@@ -167,11 +192,12 @@ class Page {
 
 /** "compaction, mpm, 20 grains, friction 0.3". */
 function summary(run: Run): string {
-  const value = (key: string) => new RegExp(`^${key} = "?([^"\\n#]*?)"?\\s*(?:#.*)?$`, "m").exec(run.header.case)?.[1];
+  const value = (key: string) =>
+    new RegExp(`^${key} = "?([^"\\n#]*?)"?\\s*(?:#.*)?$`, "m").exec(run.header.case)?.[1];
   const words = [value("loading"), value("model")].filter(Boolean);
   if (run.grains > 1) words.push(`${run.grains} grains`);
   else if (!run.hasOutlines) words.push(`${run.column("particle.x", 0).length} primaries`);
-  if (value("friction")) words.push(`friction ${value("friction")}`);
+  if (value("friction")) words.push(`friction ${Number(value("friction"))}`);
   return words.join(" · ");
 }
 
@@ -180,10 +206,14 @@ function say(words: string): void {
   $(".message").hidden = false;
 }
 
-takePayloads().then(
-  (payloads) => {
-    if (payloads.length === 0) return say("This page is a template: `softgrain report RUN` puts a run into it.");
+takePayloads()
+  .then((payloads) => {
+    if (payloads.length === 0)
+      return say("This page is a template: `softgrain report RUN` puts a run into it.");
     new Page(payloads.map((payload) => new Run(payload)));
     document.body.dataset.ready = "true";
     return undefined;
-  }).catch((error: Error) => say(`This page could not be read: ${error.message}. It needs a browser of 2023 or later.`));
+  })
+  .catch((error: Error) =>
+    say(`This page could not be read: ${error.message}. It needs a browser of 2023 or later.`),
+  );

@@ -9,6 +9,8 @@ export interface ArrayInfo {
   bytes: 1 | 2 | 4;
   count: number;
   stride: number;
+  /** 1 where the same holds for all. */
+  frames: number;
 }
 
 /** run.json, as far as the page uses it. */
@@ -80,7 +82,8 @@ export type Whole = Uint8Array | Uint16Array | Uint32Array;
 /** The whole numbers q of one array, whose planes begin at `begin`. */
 export function decodeWhole(planes: Uint8Array, begin: number, info: ArrayInfo): Whole {
   const { count, stride, bytes } = info;
-  const q = bytes === 1 ? new Uint8Array(count) : bytes === 2 ? new Uint16Array(count) : new Uint32Array(count);
+  const q =
+    bytes === 1 ? new Uint8Array(count) : bytes === 2 ? new Uint16Array(count) : new Uint32Array(count);
   for (let i = 0; i < count; ++i) {
     let code = 0;
     for (let plane = bytes - 1; plane >= 0; --plane) code = (code << 8) | planes[begin + plane * count + i];

@@ -20,7 +20,12 @@ export interface Places {
 export function placesOf(run: Run, frame: number): Places {
   const get = (name: string) => run.column(name, frame);
   const [grainX, grainY, grain] = [get("grain.x"), get("grain.y"), get("particle.grain")];
-  const [outlineX, outlineY, x, y] = [get("outline.x"), get("outline.y"), get("particle.x"), get("particle.y")];
+  const [outlineX, outlineY, x, y] = [
+    get("outline.x"),
+    get("outline.y"),
+    get("particle.x"),
+    get("particle.y"),
+  ];
   for (let g = 0; g + 1 < run.outlineBegin.length; ++g)
     for (let v = run.outlineBegin[g]; v < run.outlineBegin[g + 1]; ++v) {
       outlineX[v] += grainX[g];
@@ -46,8 +51,8 @@ export interface Box {
 export function boxOf(run: Run): Box {
   const box = { x0: Infinity, y0: Infinity, x1: -Infinity, y1: -Infinity };
   const add = (x: number, y: number, r: number) => {
-    box.x0 = Math.min(box.x0, x - r), box.x1 = Math.max(box.x1, x + r);
-    box.y0 = Math.min(box.y0, y - r), box.y1 = Math.max(box.y1, y + r);
+    ((box.x0 = Math.min(box.x0, x - r)), (box.x1 = Math.max(box.x1, x + r)));
+    ((box.y0 = Math.min(box.y0, y - r)), (box.y1 = Math.max(box.y1, y + r)));
   };
   for (const frame of run.sample(12)) {
     const p = placesOf(run, frame);
@@ -66,29 +71,45 @@ export interface ForceScale {
 
 export function forceScaleOf(run: Run): ForceScale | null {
   const forces = run.sample(25).flatMap((frame) => [...run.contacts(frame).force]);
-  if (forces.length === 0) return null;
+  // what two plates do to one grain is no chain
+  if (forces.length === 0 || (run.header.contacts_of_grains && run.grains < 2)) return null;
   const last = placesOf(run, 0);
   const area = run.hasOutlines ? quantile(run.column("grain.area", 0), 0.5) : 0;
   const radius = area > 0 ? Math.sqrt(area / Math.PI) : quantile(last.radius, 0.5);
-  return { force: quantile(forces, 0.99), width: (run.hasOutlines ? 0.5 : 1.1) * radius };
+  return { force: quantile(forces, 0.99), width: (run.hasOutlines ? 0.3 : 0.9) * radius };
 }
 
-/** x0 y0 x1 y1, width [m], r g b a for each contact; a wall is met at the foot of the grain's centre. */
-export function chainLines(run: Run, frame: number, p: Places, scale: ForceScale, paint: number[]): Float32Array {
+/**
+ * x0 y0 x1 y1, width [m], r g b a for each contact, the stronger the less transparent; a wall is met at the foot of
+ * the grain's centre.
+ */
+export function chainLines(
+  run: Run,
+  frame: number,
+  p: Places,
+  scale: ForceScale,
+  paint: number[],
+): Float32Array {
   const { a, b, force } = run.contacts(frame);
   const [x, y] = run.header.contacts_of_grains ? [p.grainX, p.grainY] : [p.x, p.y];
   const lines = new Float32Array(9 * a.length);
   a.forEach((i, c) => {
-    const end = b[c] < x.length ? [x[b[c]], y[b[c]]] : foot(p.walls.slice(4 * (b[c] - x.length)), x[i], y[i]);
-    lines.set([x[i], y[i], end[0], end[1], (scale.width * Math.min(force[c], 2 * scale.force)) / scale.force, ...paint], 9 * c);
+    const width = (scale.width * Math.min(force[c], 1.5 * scale.force)) / scale.force;
+    const wall = b[c] - x.length;
+    const end = wall < 0 ? [x[b[c]], y[b[c]]] : foot(p.walls.slice(4 * wall), x[i], y[i], width / 2);
+    const strength = Math.min(0.9, Math.max(0.12, force[c] / scale.force));
+    lines.set([x[i], y[i], end[0], end[1], width, ...paint, strength], 9 * c);
   });
   return lines;
 }
 
-function foot([x0, y0, x1, y1]: number[], x: number, y: number): [number, number] {
+/** The point of a wall that is nearest to (x, y), or `before` it, so that a round end does not stand out. */
+function foot([x0, y0, x1, y1]: number[], x: number, y: number, before: number): [number, number] {
   const length2 = (x1 - x0) ** 2 + (y1 - y0) ** 2 || 1;
   const s = Math.min(1, Math.max(0, ((x - x0) * (x1 - x0) + (y - y0) * (y1 - y0)) / length2));
-  return [x0 + s * (x1 - x0), y0 + s * (y1 - y0)];
+  const [fx, fy] = [x0 + s * (x1 - x0), y0 + s * (y1 - y0)];
+  const back = before / (Math.hypot(x - fx, y - fy) || 1);
+  return [fx + back * (x - fx), fy + back * (y - fy)];
 }
 
 /** The colour of each grain, 0 to 1. Where points show the quantity, of the mean beneath them. */
@@ -107,6 +128,10 @@ export function particleColours(frame: number, colouring: Colouring, p: Places):
 
 function colours(values: Float32Array, count: number, colouring: Colouring): Float32Array {
   const rgb = new Float32Array(3 * count);
-  for (let i = 0; i < count; ++i) rgb.set(colourOf(colouring, values[i]).map((c) => c / 255), 3 * i);
+  for (let i = 0; i < count; ++i)
+    rgb.set(
+      colourOf(colouring, values[i]).map((c) => c / 255),
+      3 * i,
+    );
   return rgb;
 }

@@ -5,9 +5,18 @@ import { valueAt } from "./series";
 import { label, scaleFor, Scale, short } from "./units";
 
 /** The first pair of columns that the runs have is shown at the start. */
-const FIRST: [string, string][] = [["strain", "stress_top"], ["strain", "stress_bottom"], ["time", "wall_height"]];
+const FIRST: [string, string][] = [
+  ["strain", "stress_top"],
+  ["strain", "stress_bottom"],
+  ["time", "wall_height"],
+];
 const SECOND: [string, string][] = [
-  ["phi", "z"], ["phi_hull", "z"], ["phi_0", "z"], ["strain", "area_ratio"], ["strain", "contacts"], ["time", "kinetic_energy"],
+  ["phi", "z"],
+  ["phi_hull", "z"],
+  ["phi_0", "z"],
+  ["strain", "area_ratio"],
+  ["strain", "contacts"],
+  ["time", "kinetic_energy"],
 ];
 const HIDDEN = new Set(["step", "leg", "wall_seconds"]);
 
@@ -18,11 +27,19 @@ class Plot {
   private chart?: uPlot;
   private selects: [HTMLSelectElement, HTMLSelectElement];
   private reading = document.createElement("output");
-  private scales: [Scale, Scale] = [{ factor: 1, unit: "" }, { factor: 1, unit: "" }];
+  private scales: [Scale, Scale] = [
+    { factor: 1, unit: "" },
+    { factor: 1, unit: "" },
+  ];
   private shown = 0;
   private frame = 0;
 
-  constructor(private runs: Run[], columns: string[], start: [string, string], private seek: (frame: number) => void) {
+  constructor(
+    private runs: Run[],
+    columns: string[],
+    start: [string, string],
+    private seek: (frame: number) => void,
+  ) {
     const [y, x] = [start[1], start[0]].map((chosen) => this.select(columns, chosen));
     this.selects = [x, y];
     const caption = document.createElement("figcaption");
@@ -50,7 +67,9 @@ class Plot {
     this.chart?.destroy();
     this.scales = this.selects.map((select) => {
       const columns = this.runs.map((run) => run.series.columns.get(select.value));
-      const largest = columns.flatMap((c) => [...(c?.values ?? [])]).reduce((m, v) => Math.max(m, Math.abs(v) || 0), 0);
+      const largest = columns
+        .flatMap((c) => [...(c?.values ?? [])])
+        .reduce((m, v) => Math.max(m, Math.abs(v) || 0), 0);
       return scaleFor(largest, columns.find((c) => c)?.unit ?? "");
     }) as [Scale, Scale];
     const data = this.runs.map((run) => [this.values(run, 0), this.values(run, 1)]);
@@ -65,17 +84,36 @@ class Plot {
     const axis = (k: 0 | 1) => {
       const { unit } = this.scales[k];
       const text = label(this.selects[k].value) + (unit ? ` [${unit}]` : "");
-      return { label: text, stroke: ink, grid: { stroke: line, width: 1 }, ticks: { stroke: line, width: 1, size: 5 },
-        font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif", labelSize: 18, size: k === 0 ? 34 : 50 };
+      return {
+        label: text,
+        stroke: ink,
+        grid: { stroke: line, width: 1 },
+        ticks: { stroke: line, width: 1, size: 5 },
+        font: "12px system-ui, sans-serif",
+        labelFont: "12px system-ui, sans-serif",
+        labelSize: 18,
+        size: k === 0 ? 34 : 50,
+      };
     };
     const curve = (index: number): uPlot.Series => ({
-      facets: [{ scale: "x", auto: true }, { scale: "y", auto: true }],
-      stroke: runColour(index), width: 1.75, paths: polyline, points: { show: false },
+      facets: [
+        { scale: "x", auto: true },
+        { scale: "y", auto: true },
+      ],
+      stroke: runColour(index),
+      width: 1.75,
+      paths: polyline,
+      points: { show: false },
     });
     return {
-      ...this.size(), mode: 2, legend: { show: false }, cursor: { show: false }, padding: [10, 14, 0, 0],
+      ...this.size(),
+      mode: 2,
+      legend: { show: false },
+      cursor: { show: false },
+      padding: [10, 14, 0, 0],
       scales: { x: { time: false, range: padded }, y: { range: padded } },
-      series: [{}, ...this.runs.map((_, index) => curve(index))], axes: [axis(0), axis(1)],
+      series: [{}, ...this.runs.map((_, index) => curve(index))],
+      axes: [axis(0), axis(1)],
     };
   }
 
@@ -138,7 +176,14 @@ const polyline: uPlot.Series.PathBuilder = (u, index) => {
     else if (drawn) path.moveTo(px, py);
     pen = drawn;
   });
-  return { stroke: path, fill: null, clip: null, band: null, gaps: null, flags: 0 } as unknown as uPlot.Series.Paths;
+  return {
+    stroke: path,
+    fill: null,
+    clip: null,
+    band: null,
+    gaps: null,
+    flags: 0,
+  } as unknown as uPlot.Series.Paths;
 };
 
 /** A little more than the data, from 0 where that is near. */
@@ -152,7 +197,9 @@ export class Plots {
   private plots: Plot[] = [];
 
   constructor(parent: HTMLElement, runs: Run[], seek: (frame: number) => void) {
-    const columns = [...new Set(runs.flatMap((run) => [...run.series.columns.keys()]))].filter((c) => !HIDDEN.has(c));
+    const columns = [...new Set(runs.flatMap((run) => [...run.series.columns.keys()]))].filter(
+      (c) => !HIDDEN.has(c),
+    );
     const there = (pair: [string, string]) => pair.every((column) => columns.includes(column));
     for (const pairs of [FIRST, SECOND]) {
       const start = pairs.find(there);

@@ -4,8 +4,12 @@ import { Renderer } from "./renderer";
 /** The pointer over the packing: a grain's numbers, magnifying (double click, back with shift) and moving. */
 export class Pointer {
   constructor(
-    private canvas: HTMLCanvasElement, private tip: HTMLElement, private renderer: Renderer,
-    private frame: () => number, private highlight: (grain: number) => void) {
+    private canvas: HTMLCanvasElement,
+    private tip: HTMLElement,
+    private renderer: Renderer,
+    private frame: () => number,
+    private highlight: (grain: number) => void,
+  ) {
     canvas.addEventListener("pointermove", (event) => this.onMove(event));
     canvas.addEventListener("pointerdown", (event) => this.onMove(event));
     canvas.addEventListener("pointerleave", () => this.leave());
@@ -24,14 +28,19 @@ export class Pointer {
     this.highlight(picked?.kind === "grain" ? picked.index : -1);
     this.tip.hidden = !picked;
     if (!picked) return;
-    this.tip.replaceChildren(...describe(renderer.run, renderer.places, this.frame(), picked).map(([heading, words]) => {
-      const line = document.createElement("div");
-      line.append(Object.assign(document.createElement("span"), { textContent: heading }),
-        Object.assign(document.createElement("b"), { textContent: words }));
-      return line;
-    }));
+    this.tip.replaceChildren(
+      ...describe(renderer.run, renderer.places, this.frame(), picked).map(([heading, words]) => {
+        const line = document.createElement("div");
+        line.append(
+          Object.assign(document.createElement("span"), { textContent: heading }),
+          Object.assign(document.createElement("b"), { textContent: words }),
+        );
+        return line;
+      }),
+    );
     const [width, height] = [this.tip.offsetWidth, this.tip.offsetHeight];
-    const left = event.offsetX + 16 + width < this.canvas.clientWidth ? event.offsetX + 16 : event.offsetX - 16 - width;
+    const left =
+      event.offsetX + 16 + width < this.canvas.clientWidth ? event.offsetX + 16 : event.offsetX - 16 - width;
     const top = Math.min(event.offsetY + 12, this.canvas.clientHeight - height);
     this.tip.style.transform = `translate(${Math.max(0, left)}px, ${Math.max(0, top)}px)`;
   }

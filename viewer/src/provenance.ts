@@ -15,7 +15,8 @@ export function showProvenance(parent: HTMLElement, runs: Run[]): void {
     downloads.append(
       download(`series.csv${everyRow}`, `${run.name}-series.csv`, run.header.series),
       download("case.toml", `${run.name}-case.toml`, caseText),
-      download("run.json", `${run.name}-run.json`, JSON.stringify(record, null, 2) + "\n"));
+      download("run.json", `${run.name}-run.json`, JSON.stringify(record, null, 2) + "\n"),
+    );
     const details = element("details", "");
     details.append(element("summary", "The case"), element("pre", caseText));
     block.append(list, downloads, details);
@@ -31,14 +32,27 @@ function lines(run: Run): [string, string][] {
     ["program", record.program && `softgrain ${record.program.version} (${record.program.commit})`],
     ["build", record.program && `${record.program.compiler}, ${record.program.flags}`],
     ["command", record.command?.join(" ")],
-    ["date", record.started && `${record.started.replace("T", " ").replace("Z", " UTC")}, ${duration(record.wall_seconds ?? 0)}`],
-    ["machine", record.machine && `${record.machine.cpu}, ${record.machine.threads} thread${record.machine.threads === 1 ? "" : "s"}`],
-    ["page", [
-      `${run.frames} snapshots`,
-      snapshots_every > 1 ? `every ${snapshots_every}th of the run` : "",
-      points_merged > 1 ? `${points_merged} material points drawn as one` : "",
-      damaged > 0 ? `${damaged} damaged left out` : "",
-    ].filter(Boolean).join(", ")],
+    [
+      "date",
+      record.started &&
+        `${record.started.replace("T", " ").replace("Z", " UTC")}, ${duration(record.wall_seconds ?? 0)}`,
+    ],
+    [
+      "machine",
+      record.machine &&
+        `${record.machine.cpu}, ${record.machine.threads} thread${record.machine.threads === 1 ? "" : "s"}`,
+    ],
+    [
+      "page",
+      [
+        `${run.frames} snapshots`,
+        snapshots_every > 1 ? `every ${snapshots_every}th of the run` : "",
+        points_merged > 1 ? `${points_merged} material points drawn as one` : "",
+        damaged > 0 ? `${damaged} damaged left out` : "",
+      ]
+        .filter(Boolean)
+        .join(", "),
+    ],
   ];
   return found.filter((line): line is [string, string] => Boolean(line[1]));
 }

@@ -1,6 +1,16 @@
-import { Colouring } from "./colouring";
-import { Buffer, Program } from "./gl";
-import { Box, boxOf, chainLines, ForceScale, forceScaleOf, grainColours, particleColours, Places, placesOf } from "./picture";
+import { chainColour, Colouring } from "./colouring";
+import { Buffer, Offscreen, Program } from "./gl";
+import {
+  Box,
+  boxOf,
+  chainLines,
+  ForceScale,
+  forceScaleOf,
+  grainColours,
+  particleColours,
+  Places,
+  placesOf,
+} from "./picture";
 import { Run } from "./run";
 import * as shaders from "./shaders";
 
@@ -19,10 +29,12 @@ export class Renderer {
   private gl: WebGL2RenderingContext;
   private fill: Program;
   private disk: Program;
+  private cone: Program;
   private line: Program;
   private fills: Buffer;
   private disks: Buffer;
   private lines: Buffer;
+  private numbers: Offscreen;
   private box: Box = { x0: 0, y0: 0, x1: 1, y1: 1 };
   private zoom = 1;
   private centre = [0, 0];
@@ -34,10 +46,12 @@ export class Renderer {
     this.gl = gl;
     this.fill = new Program(gl, shaders.FILL_VERTEX, shaders.FILL_FRAGMENT);
     this.disk = new Program(gl, shaders.DISK_VERTEX, shaders.DISK_FRAGMENT);
+    this.cone = new Program(gl, shaders.DISK_VERTEX, shaders.CONE_FRAGMENT);
     this.line = new Program(gl, shaders.LINE_VERTEX, shaders.LINE_FRAGMENT);
     this.fills = new Buffer(gl, [2, 4]);
     this.disks = new Buffer(gl, [3, 4]);
     this.lines = new Buffer(gl, [4, 1, 4], true);
+    this.numbers = new Offscreen(gl);
   }
 
   show(run: Run): void {
@@ -100,12 +114,13 @@ export class Renderer {
     const ink = inkOf(canvas);
     if (run.hasOutlines) this.drawGrains(frame, look.colouring);
     const points = !run.hasOutlines || look.colouring?.on === "particle";
-    if (points && this.places.x.length > 0) this.drawDisks(frame, look.colouring);
+    if (points && this.places.x.length > 0) this.drawPoints(frame, look.colouring);
     if (run.hasOutlines) this.drawLines(this.outlineLines([...ink, 0.75]), 1.1);
     if (look.highlight >= 0) this.drawLines(this.outlineLines([...ink, 1], look.highlight), 3.5);
     this.drawLines(this.wallLines([...ink, 1]), 3);
+    const chainPaint = chainColour(look.colouring).map((c) => c / 255);
     if (look.chains && this.forceScale)
-      this.drawLines(chainLines(run, frame, this.places, this.forceScale, [0.9, 0.16, 0.28, 0.85]), 0.4);
+      this.drawLines(chainLines(run, frame, this.places, this.forceScale, chainPaint), 0.4);
   }
 
   private use(program: Program): void {
@@ -128,7 +143,7 @@ export class Renderer {
     let at = 0;
     for (let g = 0; g < run.grains; ++g) {
       const [begin, end] = [run.outlineBegin[g], run.outlineBegin[g + 1]];
-      const paint = [rgb[3 * g], rgb[3 * g + 1], rgb[3 * g + 2], g % 65536];
+      const paint = [rgb[3 * g], rgb[3 * g + 1], rgb[3 * g + 2], g];
       for (let v = begin; v < end; ++v) {
         const w = v + 1 < end ? v + 1 : begin;
         corners.set([p.grainX[g], p.grainY[g], ...paint], at);
@@ -138,30 +153,32 @@ export class Renderer {
       }
     }
     this.use(this.fill);
-    gl.enable(gl.DEPTH_TEST);
-    gl.depthFunc(gl.ALWAYS);
     this.fills.fill(corners);
     this.fills.bind();
+    this.fill.set("numbers", 0);
     gl.drawArrays(gl.TRIANGLES, 0, corners.length / 6);
-    gl.disable(gl.DEPTH_TEST);
+    if (colouring?.on !== "particle") return;
+    this.numbers.begin(this.canvas.width, this.canvas.height);
+    this.fill.set("numbers", 1);
+    gl.drawArrays(gl.TRIANGLES, 0, corners.length / 6);
+    this.numbers.end();
   }
 
-  /** Primaries; or material points, large enough to cover their grain and cut off at its outline. */
-  private drawDisks(frame: number, colouring: Colouring | null): void {
+  /** Primaries as disks; or material points, so large that they cover their grain, cut off at its outline. */
+  private drawPoints(frame: number, colouring: Colouring | null): void {
     const { gl, run, places: p } = this;
     const inside = run.hasOutlines;
     const rgb = colouring ? particleColours(frame, colouring, p) : new Float32Array(3 * p.x.length).fill(0.6);
     const disks = new Float32Array(7 * p.x.length);
     for (let i = 0; i < p.x.length; ++i) {
-      const radius = (inside ? 1.5 : 1) * (p.radius[i] ?? 0);
-      const body = inside ? p.grain[i] % 65536 : 0;
-      disks.set([p.x[i], p.y[i], radius, rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2], body], 7 * i);
+      const radius = (inside ? 2.2 : 1) * (p.radius[i] ?? 0);
+      disks.set([p.x[i], p.y[i], radius, rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2], p.grain[i] ?? 0], 7 * i);
     }
-    this.use(this.disk);
-    this.disk.set("pixels", this.devicePixels);
-    this.disk.set("rim", inside ? 0 : 1);
+    const program = inside ? this.cone : this.disk;
+    this.use(program);
+    program.set("pixels", this.devicePixels);
+    program.set("rim", 1);
     if (inside) gl.enable(gl.DEPTH_TEST);
-    gl.depthFunc(gl.EQUAL);
     this.disks.fill(disks);
     this.disks.bind();
     gl.drawArrays(gl.POINTS, 0, p.x.length);
@@ -196,7 +213,9 @@ export class Renderer {
 
   private wallLines(paint: number[]): Float32Array {
     const { walls } = this.places;
-    return new Float32Array(walls.flatMap((_, k) => (k % 4 === 0 ? [...walls.slice(k, k + 4), 0, ...paint] : [])));
+    return new Float32Array(
+      walls.flatMap((_, k) => (k % 4 === 0 ? [...walls.slice(k, k + 4), 0, ...paint] : [])),
+    );
   }
 }
 

@@ -5,12 +5,11 @@ import { parseSeries, Series } from "./series";
 class Column {
   private q?: Whole;
 
-  constructor(private planes: Uint8Array, private begin: number, private info: ArrayInfo) {}
-
-  /** The same in all frames? Then only one is stored. */
-  get constant(): boolean {
-    return this.info.count === this.info.stride;
-  }
+  constructor(
+    private planes: Uint8Array,
+    private begin: number,
+    private info: ArrayInfo,
+  ) {}
 
   slice(begin: number, end: number): Float32Array {
     this.q ??= decodeWhole(this.planes, this.begin, this.info);
@@ -21,9 +20,9 @@ class Column {
   }
 
   frame(k: number): Float32Array {
-    const { stride } = this.info;
-    const begin = this.constant ? 0 : k * stride;
-    return this.slice(begin, begin + stride);
+    const length = this.info.count / this.info.frames;
+    const begin = this.info.frames === 1 ? 0 : k * length;
+    return this.slice(begin, begin + length);
   }
 }
 

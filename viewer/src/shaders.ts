@@ -1,5 +1,6 @@
 // Positions are in metres; `centre` and `scale` take them to clip space, `pixels` is pixels per metre.
-// A body's number is its depth, so that the points of one grain are not drawn on its neighbours.
+// paint is a colour and the number of a grain. Grains are drawn twice: in their colours, and, into a texture, in
+// their numbers, so that the points of one grain are not drawn on its neighbours.
 
 const TO_CLIP = `
 uniform vec2 centre, scale;
@@ -14,9 +15,14 @@ void main() { gl_Position = vec4(to_clip(position), 0, 1); paint = colour_body; 
 `;
 
 export const FILL_FRAGMENT = `
+uniform float numbers;
 flat in vec4 paint;
 out vec4 colour;
-void main() { colour = vec4(paint.rgb, 1); gl_FragDepth = paint.w / 65536.0; }
+void main() {
+  float n = paint.w + 1.0;
+  vec3 digits = vec3(mod(n, 256.0), mod(floor(n / 256.0), 256.0), floor(n / 65536.0)) / 255.0;
+  colour = vec4(numbers > 0.0 ? digits : paint.rgb, 1);
+}
 `;
 
 export const DISK_VERTEX = `${TO_CLIP}
@@ -41,10 +47,23 @@ out vec4 colour;
 void main() {
   float r = length(gl_PointCoord - 0.5) * (2.0 * radius + 1.5);
   float cover = clamp(radius + 0.5 - r, 0.0, 1.0);
+  if (cover <= 0.0) discard;
   float edge = rim * smoothstep(radius - 1.4, radius - 0.4, r) * smoothstep(2.0, 5.0, radius);
   colour = vec4(mix(paint.rgb, vec3(0), 0.45 * edge), 1) * cover;
-  if (cover <= 0.0) discard;
-  gl_FragDepth = paint.w / 65536.0;
+}
+`;
+
+// Points as cones seen from above: each pixel of a grain takes the colour of the nearest point of that grain.
+export const CONE_FRAGMENT = `
+uniform sampler2D grains;
+flat in vec4 paint;
+flat in float radius;
+out vec4 colour;
+void main() {
+  vec3 digits = floor(255.0 * texelFetch(grains, ivec2(gl_FragCoord.xy), 0).rgb + 0.5);
+  if (dot(digits, vec3(1, 256, 65536)) != paint.w + 1.0) discard;
+  gl_FragDepth = min(length(gl_PointCoord - 0.5), 1.0) * (2.0 * radius + 1.5) / 2048.0;
+  colour = vec4(paint.rgb, 1);
 }
 `;
 

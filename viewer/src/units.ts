@@ -1,6 +1,14 @@
 // Numbers with units, as people write them.
 
-const PREFIXES: [number, string][] = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"]];
+const PREFIXES: [number, string][] = [
+  [1e9, "G"],
+  [1e6, "M"],
+  [1e3, "k"],
+  [1, ""],
+  [1e-3, "m"],
+  [1e-6, "µ"],
+  [1e-9, "n"],
+];
 const PREFIXED = ["Pa", "m", "s", "N/m", "J/m"];
 
 /** value [shown unit] = factor * value [SI]. */
@@ -22,7 +30,10 @@ export function short(value: number): string {
   if (!Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const text = Number(value.toPrecision(3));
-  return (Math.abs(text) >= 1e5 || Math.abs(text) < 1e-3 ? text.toExponential() : String(text)).replace("-", "−");
+  return (Math.abs(text) >= 1e5 || Math.abs(text) < 1e-3 ? text.toExponential() : String(text)).replace(
+    "-",
+    "−",
+  );
 }
 
 export function withUnit(value: number, unit: string): string {
@@ -37,9 +48,16 @@ export function duration(seconds: number): string {
 }
 
 const SYMBOLS: Record<string, string> = {
-  strain: "strain ε", phi: "packing fraction Φ", z: "coordination number Z", phi_0: "packing fraction Φ₀, areas at the start",
-  phi_hull: "packing fraction Φ, hulls", stress_top: "stress, top", stress_bottom: "stress, bottom", stress_side: "stress, side",
-  area_ratio: "area A / A₀", least_J: "least det F",
+  strain: "strain ε",
+  phi: "packing fraction Φ",
+  z: "coordination number Z",
+  phi_0: "packing fraction Φ₀, areas at the start",
+  phi_hull: "packing fraction Φ, hulls",
+  stress_top: "stress, top",
+  stress_bottom: "stress, bottom",
+  stress_side: "stress, side",
+  area_ratio: "area A / A₀",
+  least_J: "least det F",
 };
 
 /** "stress, top" for stress_top. */

@@ -140,13 +140,27 @@ ReportFrame frame_of(const Scene& scene) {
   return frame;
 }
 
+bool can_merge(const ReportFrame& frame, std::size_t size) {
+  const auto column = [&](const char* name) {
+    const auto at = frame.columns.find(name);
+    return at == frame.columns.end() ? Column{} : at->second;
+  };
+  const Column grain = column("particle.grain"), x = column("particle.x"), y = column("particle.y");
+  const Column radius = column("particle.radius");
+  const bool has_points = frame.contacts_of_grains && !grain.empty() && radius.size() == grain.size();
+  if (!has_points || grain.size() % size != 0) return false;
+  for (std::size_t i = 0; i < grain.size(); ++i) {
+    const std::size_t first = i - i % size;
+    const float reach = 4 * std::sqrt(static_cast<float>(size)) * radius[first];
+    if (grain[i] != grain[first] || std::hypot(x[i] - x[first], y[i] - y[first]) > reach) return false;
+  }
+  return true;
+}
+
 void merge_particles(ReportFrame& frame, std::size_t size) {
-  const Column grain = frame.columns["particle.grain"];
-  if (size < 2 || grain.empty() || grain.size() % size != 0) return;
-  for (std::size_t i = 0; i < grain.size(); i += size)
-    if (grain[i] != grain[i + size - 1]) return;
+  if (size < 2) return;
   for (auto& [name, column] : frame.columns) {
-    if (!name.starts_with("particle.") || column.size() != grain.size()) continue;
+    if (!name.starts_with("particle.")) continue;
     Column merged;
     for (std::size_t i = 0; i < column.size(); i += size) {
       double sum = 0;

@@ -24,8 +24,10 @@ struct ReportFrame {
 
 ReportFrame frame_of(const Scene& scene);
 
-/// Particles in groups of `size` neighbours of one grain, each replaced by its mean: the four material points
-/// of a cell lie side by side. Without effect when a group would have particles of two grains.
+/// Do material points come in groups of `size` that lie side by side in one grain, as the four of a cell do?
+bool can_merge(const ReportFrame& frame, std::size_t size);
+
+/// Replaces each group of `size` particles by its mean.
 void merge_particles(ReportFrame& frame, std::size_t size);
 
 }  // namespace softgrain

@@ -78,15 +78,17 @@ class Frames {
     }
   }
 
+  /// The four points of a cell are shown by their mean, always: within a cell the pressure of a nearly
+  /// incompressible material oscillates without meaning.
   void choose_thinning(double frames, const ReportLimits& limits) {
     const auto& columns = frames_.front().columns;
-    const bool soft = columns.contains("outline.x") && columns.contains("particle.grain");
     const auto x = columns.find("particle.x");
-    const double particles = x == columns.end() ? 0 : static_cast<double>(x->second.size());
-    if (soft)
-      while (particles * frames / static_cast<double>(merged_) > limits.particles) merged_ *= 4;
-    else
-      every_ = share(particles * frames, limits.particles);
+    double count = x == columns.end() ? 0 : frames * static_cast<double>(x->second.size());
+    while ((merged_ == 1 || count > limits.particles) && can_merge(frames_.front(), 4 * merged_)) {
+      merged_ *= 4;
+      count /= 4;
+    }
+    every_ = share(count, limits.particles);
   }
 
   /// Below 1 % of a strong force a line cannot be seen.
@@ -168,31 +170,36 @@ void clip_outliers(Column& values) {
   for (float& value : values) value = std::clamp(value, low, high);
 }
 
-/// One column in all frames, one after another; one frame of it where it never changes; nothing where frames
-/// lack it or, for other than contacts, their sizes differ.
-std::pair<Column, std::size_t> gather(const std::vector<ReportFrame>& frames, const std::string& name) {
+/// One column in all frames, one after another.
+struct Gathered {
+  Column values;
+  std::size_t stride = 1;  ///< from a number to the one that it is coded against
+  std::size_t frames = 1;  ///< 1 where it never changes
+};
+
+/// Nothing where frames lack the column or, for other than contacts, their sizes differ.
+Gathered gather(const std::vector<ReportFrame>& frames, const std::string& name) {
   const bool ragged = name.starts_with("contact.");
   const Column& first = frames.front().columns.at(name);
-  Column all;
+  // the radius of a material point hardly changes
   bool changes = ragged;
+  const bool keep_first = name == "particle.radius" && frames.front().columns.contains("outline.x");
+  Column all;
   for (const ReportFrame& frame : frames) {
     const auto column = frame.columns.find(name);
     if (column == frame.columns.end() || (!ragged && column->second.size() != first.size())) return {};
-    changes = changes || column->second != first;
+    changes = changes || (column->second != first && !keep_first);
     all.insert(all.end(), column->second.begin(), column->second.end());
   }
-  if (!changes) return {first, 1};
-  // the radius of a material point hardly changes
-  const bool keep_first = name == "particle.radius" && frames.front().columns.contains("outline.x");
-  if (keep_first) return {first, 1};
-  return {all, ragged ? 1 : first.size()};
+  if (!changes) return {.values = first};
+  return {std::move(all), ragged ? 1 : first.size(), frames.size()};
 }
 
 void add_arrays(const std::vector<ReportFrame>& frames, Json& header, std::string& planes) {
   Json arrays = Json::array();
   const double picture = picture_size(frames.front());
   for (const auto& [name, first] : frames.front().columns) {
-    auto [values, stride] = gather(frames, name);
+    auto [values, stride, stored_frames] = gather(frames, name);
     if (values.empty()) continue;
     if (name == "particle.pressure" && values.size() > few) clip_outliers(values);
     const EncodedArray array = is_index(name)
@@ -203,7 +210,8 @@ void add_arrays(const std::vector<ReportFrame>& frames, Json& header, std::strin
                       {"step", array.step},
                       {"bytes", array.bytes},
                       {"count", array.count},
-                      {"stride", stride}});
+                      {"stride", stride},
+                      {"frames", stored_frames}});
     planes += array.planes;
   }
   header["arrays"] = arrays;

@@ -13,12 +13,12 @@ struct ReportRun {
   std::vector<std::string> warnings;  ///< one for each snapshot that was left out because it is damaged
 };
 
-/// How much a page may hold before it is thinned: soft grains' points are merged in fours, primaries are
+/// How much a page may hold before it is thinned: material points are merged further, primaries are
 /// shown at fewer times, weak contacts and rows of the series are left out.
 struct ReportLimits {
   double particles = 14e6;  ///< times frames
-  double contacts = 3e6;      ///< in all frames
-  double rows = 4000;         ///< of the series
+  double contacts = 3e6;    ///< in all frames
+  double rows = 4000;       ///< of the series
 };
 
 /// Reads a run's directory. `name` is what the page calls it. Raises UsageError, with what to do about it,
