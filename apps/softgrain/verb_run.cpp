@@ -68,8 +68,11 @@ std::string closing_words(const RunRecord& record, const RunPaths& paths, bool h
   const auto reached = verdict(record.report, record.tolerance);
   const std::string directory = paths.root.string();
   const auto page = has_page ? fmt::format("look at {} in a browser, or ", paths.report_file().string()) : "";
+  const auto early =
+      record.message.empty() ? "" : fmt::format("ended before the last strain: {}\n", record.message);
   if (record.state == "done")
-    return fmt::format("{}\nresults in {}; next: {}softgrain plot {}\n", reached, directory, page, directory);
+    return fmt::format("{}{}\nresults in {}; next: {}softgrain plot {}\n", early, reached, directory, page,
+                       directory);
   return fmt::format("stopped by {} at {:.1f} %: {}\nresults in {}; go on with: softgrain resume {}\n",
                      record.message, 100 * record.progress, reached, directory, directory);
 }

@@ -7,7 +7,9 @@
 
 namespace softgrain {
 
-AttractionForces::AttractionForces(const Attraction& law) : law_(law) { require_valid(law); }
+AttractionForces::AttractionForces(std::vector<Attraction> laws) : laws_(std::move(laws)) {
+  for (const Attraction& law : laws_) require_valid(law);
+}
 
 void AttractionForces::update(const RigidParticles<2>& particles, const NeighbourReference<2>& reference) {
   if (generation_ == reference.generation) return;
@@ -34,6 +36,7 @@ void AttractionForces::update(const RigidParticles<2>& particles, const Neighbou
 void AttractionForces::add_forces(const RigidParticles<2>& particles, std::span<Vec<2>> force) const {
   const double* radius = particles.radius.data();
   for (int i = 0; i < particles.size(); ++i) {
+    const Attraction& attraction = law(particles.grain[i]);
     const Vec<2>& x = particles.position[i];
     Lanes sum_x = splat(0), sum_y = splat(0);
     for (int k = row_begin_[i]; k < row_begin_[i + 1]; k += lane_count) {
@@ -43,7 +46,7 @@ void AttractionForces::add_forces(const RigidParticles<2>& particles, std::span<
       const Lanes a0 = radius[i] + Lanes{radius[j[0]], radius[j[1]], radius[j[2]], radius[j[3]]};
       const Lanes r_squared = d_x * d_x + d_y * d_y;
       // F_ij = F(r)/r (x_j - x_i); a row's padding has x_j = x_i, which would be 0/0
-      const Lanes F_over_r = law_.force_over_distance(r_squared > 0 ? r_squared : a0 * a0, a0);
+      const Lanes F_over_r = attraction.force_over_distance(r_squared > 0 ? r_squared : a0 * a0, a0);
       sum_x += F_over_r * d_x;
       sum_y += F_over_r * d_y;
     }
@@ -55,7 +58,7 @@ double AttractionForces::energy(const RigidParticles<2>& particles) const {
   double sum = 0;
   for_each_pair([&](int i, int j) {
     const double r = norm(particles.position[j] - particles.position[i]);
-    sum += law_.energy(r, particles.radius[i] + particles.radius[j]);
+    sum += law(particles.grain[i]).energy(r, particles.radius[i] + particles.radius[j]);
   });
   return sum;
 }

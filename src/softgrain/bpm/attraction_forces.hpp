@@ -12,7 +12,11 @@ namespace softgrain {
 /// twice: no particle is written by another's row, so the sum's order is fixed).
 class AttractionForces {
  public:
-  explicit AttractionForces(const Attraction& law);
+  /// The same law in every grain.
+  explicit AttractionForces(const Attraction& law) : AttractionForces(std::vector{law}) {}
+
+  /// The law of each grain, by its number in RigidParticles::grain; a single one holds for all.
+  explicit AttractionForces(std::vector<Attraction> laws);
 
   /// Makes the list again if the reference has moved on: all pairs of one grain closer than 2 a0 + skin
   /// there.
@@ -32,10 +36,10 @@ class AttractionForces {
         if (i < neighbour_[k]) visit(i, neighbour_[k]);
   }
 
-  const Attraction& law() const { return law_; }
+  const Attraction& law(int grain) const { return laws_.size() == 1 ? laws_.front() : laws_[grain]; }
 
  private:
-  Attraction law_;
+  std::vector<Attraction> laws_;
   int generation_ = -1;
   std::vector<int> row_begin_;  ///< (n + 1), rows are padded to four lanes with the particle itself
   std::vector<int> neighbour_;

@@ -19,10 +19,14 @@ struct Case {
   } grain;
 
   struct Bpm {
-    int primaries = 1750;       ///< rigid primary particles in a grain
-    double size_ratio = 1.625;  ///< largest over smallest primary diameter (paper: 0.26 mm / 0.16 mm)
-    double attraction = 100;    ///< F0 [N/m]
-    double exponent = 7;        ///< gamma [-]
+    int primaries = 1750;              ///< rigid primary particles in a grain
+    double size_ratio = 1.625;         ///< largest over smallest primary diameter (paper: 0.26 mm / 0.16 mm)
+    double attraction = 100;           ///< F0 of a grain between plates [N/m]
+    double cohesive_pressure = 0.5e6;  ///< sigma_I = F0/<a0> of each grain of a packing [Pa]
+    double exponent = 7;               ///< gamma [-]
+    double inner_friction = 0;         ///< mu between the primaries of a grain of a packing
+    std::string equal = "count";       ///< what the grains of a packing share: "count" or "size" of primaries
+    int library = 6;                   ///< different aggregates of which a packing is made
   } bpm;
 
   struct Mpm {
@@ -39,7 +43,7 @@ struct Case {
   } mpm;
 
   struct Contact {
-    double friction = 0;       ///< mu between primaries of one grain (bpm), between grains (mpm)
+    double friction = 0;       ///< mu between grains; of one bpm grain between plates: between its primaries
     double wall_friction = 0;  ///< mu against walls
     double restitution = 0;    ///< e_n, Newton's
     std::string activation =
@@ -55,10 +59,13 @@ struct Case {
   } solver;
 
   struct Loading {
-    double wall_velocity = 0.2;               ///< of the top plate [m/s]
-    double max_strain = 0.35;                 ///< grain strain eps at the end of loading
-    std::vector<double> unload_at{0.1, 0.3};  ///< strains at which the plate turns back
-    double unload_by = 0.015;                 ///< strain given back before loading again
+    double wall_velocity = 0.2;       ///< of the top plate [m/s]
+    double max_strain = 0.35;         ///< strain at the end of loading
+    double max_packing_fraction = 0;  ///< Phi_0 at the end of a compaction; 0: as max_strain says
+    double max_stress = 0;            ///< sigma at the end of a compaction [Pa]; 0: any
+    std::vector<double> unload_at{};  ///< strains at which the plate turns back
+    double unload_by = 0.015;         ///< strain given back before loading again
+    double hold = 0;                  ///< rest of the plate at each turn and at the end [s]
   } loading;
 
   struct Time {

@@ -1,27 +1,34 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 
-#include "softgrain/experiment/case.hpp"
+#include "softgrain/experiment/plate_legs.hpp"
 #include "softgrain/experiment/plate_path.hpp"
 
 namespace softgrain {
 
-/// Uniaxial compaction: the lid of a box comes down at constant speed to the strain eps = ln(h_start/h).
+/// Uniaxial compaction: the lid of a box comes down at constant speed, back and down again as the case says,
+/// to the strain eps = ln(h_start/h), or to the packing fraction of undeformed grains Phi_0 = Phi_start
+/// e^eps.
 class CompactionPath final : public PlatePath {
  public:
-  /// height: of the box at the start [m].
-  CompactionPath(const Case::Loading& loading, double height, double dt)
-      : velocity_(loading.wall_velocity),
-        steps_(std::llround(height * (1 - std::exp(-loading.max_strain)) / (velocity_ * dt))) {}
+  /// height [m] and packing fraction of the box at the start.
+  CompactionPath(const Case::Loading& loading, double height, double dt, double packing_fraction)
+      : legs_(loading, dt, last_strain(loading, packing_fraction),
+              [=](double strain) { return -height * std::expm1(-strain); }) {}
 
-  std::int64_t steps() const override { return steps_; }
-  double plate_velocity(std::int64_t) const override { return -velocity_; }
-  int leg(std::int64_t) const override { return 0; }
+  std::int64_t steps() const override { return legs_.steps(); }
+  double plate_velocity(std::int64_t step) const override { return legs_.velocity(step); }
+  int leg(std::int64_t step) const override { return legs_.leg(step); }
   double strain(double height_start, double height) const override { return std::log(height_start / height); }
 
+  static double last_strain(const Case::Loading& loading, double packing_fraction) {
+    if (loading.max_packing_fraction == 0) return loading.max_strain;
+    return std::min(loading.max_strain, std::log(loading.max_packing_fraction / packing_fraction));
+  }
+
  private:
-  double velocity_;
-  std::int64_t steps_;
+  PlateLegs legs_;
 };
 
 }  // namespace softgrain

@@ -1,6 +1,7 @@
 #include "softgrain/experiment/create.hpp"
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/experiment/bpm_compaction.hpp"
 #include "softgrain/experiment/bpm_compression.hpp"
 #include "softgrain/experiment/mpm_simulation.hpp"
 
@@ -12,7 +13,7 @@ std::unique_ptr<Simulation> create_simulation(const Case& the_case) {
           "experiment.loading must be 'diametral' or 'compaction', got '{}'", loading);
   if (model == "mpm") return create_mpm_simulation(the_case);
   require(model == "bpm", "experiment.model must be 'bpm' or 'mpm', got '{}'", model);
-  require(loading == "diametral", "experiment.loading '{}' needs experiment.model 'mpm' for now", loading);
+  if (loading == "compaction") return std::make_unique<BpmCompaction>(the_case);
   return std::make_unique<BpmCompression>(the_case);
 }
 

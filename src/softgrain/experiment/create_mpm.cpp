@@ -34,11 +34,7 @@ MpmSetup setup_of(const Case& c) {
                    {.point = {0, reach}, .normal = {0, -1}, .velocity = {}}};
     return setup;
   }
-  const BoxSample sample = sample_box({.grains = c.sample.grains,
-                                       .smallest = c.sample.smallest_diameter,
-                                       .largest = c.sample.largest_diameter,
-                                       .packing_fraction = c.sample.packing_fraction,
-                                       .seed = static_cast<std::uint64_t>(c.sample.seed)});
+  const BoxSample sample = sample_box(c);
   for (const PlacedGrain& grain : sample.grains)
     setup.grains.push_back({.topology = shape,
                             .radius = grain.radius,
@@ -56,7 +52,8 @@ MpmSetup setup_of(const Case& c) {
 std::unique_ptr<PlatePath> path_of(const Case& c, const std::vector<Wall<2>>& walls, double dt) {
   if (c.experiment.loading == "diametral")
     return std::make_unique<DiametralPath>(c.loading, c.grain.radius, dt);
-  return std::make_unique<CompactionPath>(c.loading, walls[top].point[1] - walls[bottom].point[1], dt);
+  return std::make_unique<CompactionPath>(c.loading, walls[top].point[1] - walls[bottom].point[1], dt,
+                                          c.sample.packing_fraction);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "softgrain/experiment/compaction_path.hpp"
 #include "softgrain/experiment/diametral_path.hpp"
 
 namespace softgrain {
@@ -18,17 +19,31 @@ double smallest_radius(const Case& c) {
 
 /// Travel of the plate, there and back [m].
 double travel(const Case& c) {
-  if (is_diametral(c)) {
-    double path = plate_travel(c.loading.max_strain, c.grain.radius);
-    for (const double turn : c.loading.unload_at)
-      path +=
-          2 * (plate_travel(turn, c.grain.radius) - plate_travel(turn - c.loading.unload_by, c.grain.radius));
-    return path;
-  }
   const double mean_diameter = (c.sample.smallest_diameter + c.sample.largest_diameter) / 2;
   const double grain_area = std::numbers::pi / 4 * mean_diameter * mean_diameter;
-  return std::sqrt(grains(c) * grain_area / c.sample.packing_fraction) *
-         (1 - std::exp(-c.loading.max_strain));
+  const double side = std::sqrt(grains(c) * grain_area / c.sample.packing_fraction);
+  const auto travel_to = [&](double strain) {
+    return is_diametral(c) ? plate_travel(strain, c.grain.radius) : -side * std::expm1(-strain);
+  };
+  const double last = is_diametral(c) ? c.loading.max_strain
+                                      : CompactionPath::last_strain(c.loading, c.sample.packing_fraction);
+  double path = travel_to(last);
+  for (const double turn : c.loading.unload_at)
+    if (turn < last) path += 2 * (travel_to(turn) - travel_to(turn - c.loading.unload_by));
+  return path;
+}
+
+/// Time in which the plate rests [s].
+double rest(const Case& c) {
+  return c.loading.hold * (1 + 2 * static_cast<double>(c.loading.unload_at.size()));
+}
+
+/// Primaries of all grains.
+double primaries(const Case& c) {
+  if (is_diametral(c) || c.bpm.equal == "count") return grains(c) * c.bpm.primaries;
+  // mean of (R / R_min)^2 over radii spread evenly
+  const double ratio = c.sample.largest_diameter / c.sample.smallest_diameter;
+  return grains(c) * c.bpm.primaries * (1 + ratio + ratio * ratio) / 3;
 }
 
 double time_step(const Case& c) {
@@ -57,9 +72,10 @@ Estimate estimate(const Case& the_case) {
   const bool bpm = the_case.experiment.model == "bpm";
   const double cells = the_case.mpm.cells;
   Estimate result;
-  result.particles = grains(the_case) * (bpm ? the_case.bpm.primaries : 14 * cells * cells);
+  result.particles = bpm ? primaries(the_case) : grains(the_case) * 14 * cells * cells;
   result.contacts = bpm ? 2.2 * result.particles : grains(the_case) * 3.3 * cells;
-  result.steps = std::round(travel(the_case) / (the_case.loading.wall_velocity * time_step(the_case)));
+  result.steps =
+      std::round((travel(the_case) / the_case.loading.wall_velocity + rest(the_case)) / time_step(the_case));
   result.memory = 50e6 + 1000 * result.particles + 200 * result.contacts;
   result.hours = result.steps * seconds_of_step(the_case, result) * second;
   return result;

@@ -10,7 +10,7 @@ class PlatePath {
   virtual std::int64_t steps() const = 0;
   /// Velocity of the top plate during step k [m/s]: negative while loading.
   virtual double plate_velocity(std::int64_t step) const = 0;
-  /// Number of the leg of step k: 0 loading, 1 unloading, 2 reloading, ...
+  /// Number of the leg of step k: 0 loading, 1 unloading, 2 reloading, ...; a rest is a leg of its own.
   virtual int leg(std::int64_t step) const = 0;
   /// Strain for the distance of the plates at the start and now [m].
   virtual double strain(double height_start, double height) const = 0;

@@ -74,4 +74,12 @@ BoxSample sample_box(const BoxSampleOptions& options) {
                   options.grains, options.packing_fraction));
 }
 
+BoxSample sample_box(const Case& c) {
+  return sample_box({.grains = c.sample.grains,
+                     .smallest = c.sample.smallest_diameter,
+                     .largest = c.sample.largest_diameter,
+                     .packing_fraction = c.sample.packing_fraction,
+                     .seed = static_cast<std::uint64_t>(c.sample.seed)});
+}
+
 }  // namespace softgrain

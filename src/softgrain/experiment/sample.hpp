@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "softgrain/experiment/case.hpp"
 #include "softgrain/math/vec.hpp"
 
 namespace softgrain {
@@ -31,5 +32,8 @@ struct BoxSampleOptions {
 /// The same seed gives the same bits. Raises UsageError if the packing fraction is so high that none is
 /// found.
 BoxSample sample_box(const BoxSampleOptions& options);
+
+/// The sample of a case, the same for every model.
+BoxSample sample_box(const Case& the_case);
 
 }  // namespace softgrain

@@ -48,6 +48,8 @@ class Simulation {
   virtual double time() const = 0;      ///< [s]
   virtual std::int64_t steps_done() const = 0;
   virtual std::int64_t steps_planned() const = 0;
+  /// Why the simulation has finished before its last planned step, for the user; "" if it has not.
+  virtual std::string early_end() const { return ""; }
   /// True after the last step before the load turns: a state worth keeping.
   virtual bool at_turning_point() const = 0;
   /// Advances by one time step. Raises NumericalError when the state is not finite or the overlap shows that

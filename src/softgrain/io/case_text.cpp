@@ -58,18 +58,23 @@ Json value_schema(const Key& key) {
   return whole;
 }
 
-Case diametral_mpm() {
+/// One grain of the paper, unloaded at its two strains.
+Case diametral(const std::string& model) {
   Case c;
-  c.experiment.model = "mpm";
+  c.experiment.model = model;
+  c.loading.unload_at = {0.1, 0.3};
   return c;
 }
 
 /// Grains, speed and packing fraction of the paper's packings.
-Case compaction_mpm() {
+Case compaction(const std::string& model) {
   Case c;
-  c.experiment = {.loading = "compaction", .model = "mpm"};
+  c.experiment = {.loading = "compaction", .model = model};
   c.sample.grains = 300;
-  c.loading = {.wall_velocity = 5, .max_strain = 0.3, .unload_at = {}, .unload_by = c.loading.unload_by};
+  c.loading.wall_velocity = 5;
+  c.loading.max_strain = model == "mpm" ? 0.3 : 0.42;
+  c.bpm.primaries = 200;
+  c.time.step = 0.1e-6;
   return c;
 }
 
@@ -152,9 +157,11 @@ std::string case_reference_page() {
 
 const std::vector<CaseTemplate>& case_templates() {
   static const std::vector<CaseTemplate> templates{
-      {"diametral-bpm", "one grain of rigid primary particles between two plates", Case{}},
-      {"diametral-mpm", "one elastic grain between two plates", diametral_mpm()},
-      {"compaction-mpm", "300 elastic grains in a box whose lid comes down", compaction_mpm()},
+      {"diametral-bpm", "one grain of rigid primary particles between two plates", diametral("bpm")},
+      {"diametral-mpm", "one elastic grain between two plates", diametral("mpm")},
+      {"compaction-bpm", "300 grains of 200 primary particles in a box whose lid comes down",
+       compaction("bpm")},
+      {"compaction-mpm", "300 elastic grains in a box whose lid comes down", compaction("mpm")},
   };
   return templates;
 }

@@ -205,9 +205,10 @@ int RunRecorder::end(const Simulation& simulation) {
   const int signal = signals_.stop_signal();
   const bool done = simulation.finished();
   record_.state = done ? "done" : "stopped";
-  if (!done) record_.message = signal != 0 ? signal_name(signal) : "time limit";
+  record_.message = done ? simulation.early_end() : signal != 0 ? signal_name(signal) : "time limit";
   write_record(simulation);
-  log(fmt::format("{}: {}", done ? "done" : "stopped by " + record_.message,
+  const std::string early = record_.message.empty() ? "" : " before the last strain: " + record_.message;
+  log(fmt::format("{}: {}", done ? "done" + early : "stopped by " + record_.message,
                   verdict(record_.report, record_.tolerance)));
   if (done) return 0;
   return signal != 0 ? exit_code_of(signal) : exit_requeue;

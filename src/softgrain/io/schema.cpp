@@ -34,7 +34,7 @@ std::vector<Key> all_keys() {
   return {
       KEY(experiment.loading, "", one_of({"diametral", "compaction"}),
           "the loading path; diametral: one grain between two plates, the top one moves; compaction: grains in a box "
-          "whose lid comes down (mpm)"),
+          "whose lid comes down"),
       KEY(experiment.model, "", one_of({"bpm", "mpm"}),
           "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other; mpm: an "
           "elastic body by the material point method"),
@@ -42,12 +42,21 @@ std::vector<Key> all_keys() {
       KEY(grain.radius, "mm", positive(), "radius R of the grain"),
       KEY(grain.density, "kg/m^3", positive(), "density rho; the grain weighs rho pi R^2 per metre of depth"),
 
-      KEY(bpm.primaries, "", from_to(7, 1e6), "number of primary particles in a grain"),
+      KEY(bpm.primaries, "", from_to(7, 1e6),
+          "number of primary particles in a grain; compaction: in each, or in the smallest (bpm.equal)"),
       KEY(bpm.size_ratio, "", from_to(1, 10), "largest over smallest primary diameter"),
       KEY(bpm.attraction, "N/m", at_least(0),
-          "attraction F0 between touching primaries of one grain, per metre of depth"),
+          "attraction F0 between touching primaries of the grain, per metre of depth (diametral)"),
+      KEY(bpm.cohesive_pressure, "MPa", positive(),
+          "internal cohesive pressure sigma_I = F0/<a0>, the same in all grains: F0 follows the size of their "
+          "primaries (compaction)"),
       KEY(bpm.exponent, "", at_least(1),
           "exponent gamma of F0 (a0/r)^gamma, r the distance of the centres, a0 the sum of the radii"),
+
+      KEY(bpm.inner_friction, "", at_least(0), "coefficient of friction mu between the primaries of a grain (compaction)"),
+      KEY(bpm.equal, "", one_of({"count", "size"}),
+          "what all grains share: the number of primaries, or, to about 5 %, their size (compaction)"),
+      KEY(bpm.library, "", from_to(1, 1000), "different aggregates of which the grains are copies (compaction)"),
 
       KEY(mpm.law, "", one_of(law_names()), "elastic law"),
       KEY(mpm.young_modulus, "MPa", positive(), "Young's modulus E"),
@@ -65,7 +74,7 @@ std::vector<Key> all_keys() {
       KEY(mpm.tolerance, "", positive(), "largest last correction of Newton's method over the mean grain radius"),
 
       KEY(contact.friction, "", at_least(0),
-          "coefficient of friction mu, between the primaries of a grain (bpm) or between grains (mpm)"),
+          "coefficient of friction mu between grains; diametral test of a bpm grain: between its primaries"),
       KEY(contact.wall_friction, "", at_least(0), "coefficient of friction mu against walls"),
       KEY(contact.restitution, "", from_to(0, 1), "Newton's coefficient of restitution e_n"),
       KEY(contact.activation, "", one_of({"anticipated", "closed_at_mid_step"}),
@@ -81,9 +90,14 @@ std::vector<Key> all_keys() {
       KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top plate"),
       KEY(loading.max_strain, "", between(0, 3),
           "strain at the end: eps = -ln(1 - d/R), d half the travel of the plate; compaction: eps = ln(h_start/h)"),
+      KEY(loading.max_packing_fraction, "", from_to(0, 2),
+          "packing fraction Phi_0 of the undeformed grains at the end, if max_strain comes later; 0: none (compaction)"),
+      KEY(loading.max_stress, "MPa", at_least(0),
+          "vertical stress at the end, mean of lid and bottom over 0.1 % of strain; 0: none (compaction, bpm)"),
       KEY(loading.unload_at, "", positive(),
           "ascending strains at which the plate turns back once; [] for none"),
       KEY(loading.unload_by, "", positive(), "strain given back before loading again"),
+      KEY(loading.hold, "us", at_least(0), "rest of the plate wherever it turns, and at the end"),
 
       KEY(time.step, "us", positive(), "time step dt"),
 
@@ -118,20 +132,15 @@ std::vector<TableOfKeys> all_tables() {
 // clang-format on
 #undef KEY
 
-/// Only the diametral path turns back.
-std::vector<double> turns(const Case& c) {
-  return c.experiment.loading == "diametral" ? c.loading.unload_at : std::vector<double>{};
-}
-
 std::string unloading_not_ascending(const Case& c) {
-  const auto strains = turns(c);
+  const auto& strains = c.loading.unload_at;
   const auto turn = std::adjacent_find(strains.begin(), strains.end(), std::greater_equal<>{});
   if (turn == strains.end()) return "";
   return fmt::format("loading.unload_at must be ascending: {} stands before {}", *turn, *(turn + 1));
 }
 
 std::string unloading_after_the_end(const Case& c) {
-  const auto strains = turns(c);
+  const auto& strains = c.loading.unload_at;
   const auto late =
       std::find_if(strains.begin(), strains.end(), [&](double eps) { return eps >= c.loading.max_strain; });
   if (late == strains.end()) return "";
@@ -140,7 +149,7 @@ std::string unloading_after_the_end(const Case& c) {
 }
 
 std::string unloading_below_zero(const Case& c) {
-  const auto strains = turns(c);
+  const auto& strains = c.loading.unload_at;
   if (strains.empty() || c.loading.unload_by < strains.front()) return "";
   return fmt::format("loading.unload_by must be below the first of loading.unload_at: {} is not below {}",
                      c.loading.unload_by, strains.front());
@@ -166,10 +175,11 @@ std::string too_many_steps(const Case& c) {
                      steps);
 }
 
-std::string no_such_experiment(const Case& c) {
-  if (c.experiment.loading == "diametral" || c.experiment.model == "mpm") return "";
-  return fmt::format("experiment.loading \"{}\" needs experiment.model \"mpm\" for now",
-                     c.experiment.loading);
+std::string too_dense_from_the_start(const Case& c) {
+  const double last = c.loading.max_packing_fraction;
+  if (c.experiment.loading == "diametral" || last == 0 || last > c.sample.packing_fraction) return "";
+  return fmt::format("loading.max_packing_fraction must be above sample.packing_fraction: {} is not above {}",
+                     last, c.sample.packing_fraction);
 }
 
 std::string formulation_cannot(const Case& c) {
@@ -222,7 +232,7 @@ const std::vector<Relation>& case_relations() {
       {{"time.step", "mpm.time_step", "loading.wall_velocity", "loading.max_strain", "grain.radius"},
        too_many_steps},
       {{"mpm.formulation", "mpm.contact_on", "experiment.loading"}, formulation_cannot},
-      {{"experiment.loading", "experiment.model"}, no_such_experiment},
+      {{"loading.max_packing_fraction", "sample.packing_fraction"}, too_dense_from_the_start},
   };
   return relations;
 }

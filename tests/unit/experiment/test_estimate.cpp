@@ -27,7 +27,7 @@ TEST_CASE("the estimate counts the steps of every path") {
   c.sample.packing_fraction = 0.5;
   c.mpm.time_step = 1e-6;
   const double side = std::sqrt(c.sample.grains * 3.14159265 * 1e-6 / 0.5);
-  const auto compaction = static_cast<double>(CompactionPath(c.loading, side, 1e-6).steps());
+  const auto compaction = static_cast<double>(CompactionPath(c.loading, side, 1e-6, 0.5).steps());
   CHECK(estimate(c).steps == doctest::Approx(compaction).epsilon(1e-3));
 }
 

@@ -124,13 +124,16 @@ TEST_CASE("a value out of range is refused, with the range and the default") {
 TEST_CASE("keys that do not fit together are refused where the last of them stands") {
   CHECK(mentions(refusal("loading.unload_at = [0.3, 0.1]"),
                  "case.toml:1:9: error: loading.unload_at must be ascending"));
-  CHECK(mentions(refusal("loading.max_strain = 0.2"), "0.3 is not below 0.2"));
-  CHECK(mentions(refusal("loading.unload_by = 0.1"), "0.1 is not below 0.1"));
+  CHECK(
+      mentions(refusal("loading.unload_at = [0.1, 0.3]\nloading.max_strain = 0.2"), "0.3 is not below 0.2"));
+  CHECK(mentions(refusal("loading.unload_at = [0.1, 0.3]\nloading.unload_by = 0.1"), "0.1 is not below 0.1"));
   CHECK(mentions(refusal("solver.min_sweeps = 100\nsolver.max_sweeps = 99"),
                  "case.toml:2:8: error: solver.min_sweeps"));
   CHECK(mentions(refusal("time.step = 1e-300"), "too many"));
   CHECK(mentions(refusal("experiment.model = \"mpm\"\nmpm.time_step = 1e-300"), "too many"));
-  CHECK(mentions(refusal("experiment.loading = \"compaction\""), "needs experiment.model \"mpm\""));
+  CHECK(mentions(refusal("experiment.loading = \"compaction\"\nloading.max_packing_fraction = 0.7"),
+                 "0.7 is not above 0.7"));
+  CHECK(refusal("loading.max_packing_fraction = 0.7").empty());  // of a packing only
   CHECK(mentions(refusal("sample.smallest_diameter = \"3 mm\""), "0.003 m is above 0.0024 m"));
   CHECK(refusal("experiment.loading = \"compaction\"\nexperiment.model = \"mpm\"\nloading.max_strain = 0.2")
             .empty());
@@ -157,7 +160,7 @@ TEST_CASE("--set goes the same way as the file, comes after it, and is named in 
   CHECK(mentions(refusal("", {"time.step"}), "--set time.step: error: expected key=value"));
   CHECK(mentions(refusal("", {"time.step=5 m"}), "wrong dimension for a time"));
   CHECK(mentions(refusal("", {"bpm.primaries=3\ntime.step=1"}), "--set bpm.primaries"));
-  CHECK(mentions(refusal("", {"loading.max_strain=0.2"}),
+  CHECK(mentions(refusal("loading.unload_at = [0.3]", {"loading.max_strain=0.2"}),
                  "--set loading.max_strain=0.2: error: loading.unload_at"));
 }
 

@@ -67,7 +67,7 @@ TEST_CASE("every template is a valid case") {
 }
 
 TEST_CASE("the commented case is written as people write it") {
-  const std::string text = commented_case_text(Case{});
+  const std::string text = commented_case_text(case_templates().front().content);
   CHECK(text.find("radius = \"5 mm\"\n") != std::string::npos);
   CHECK(text.find("attraction = \"100 N/m\"\n") != std::string::npos);
   CHECK(text.find("unload_at = [0.1, 0.3]\n") != std::string::npos);

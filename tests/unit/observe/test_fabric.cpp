@@ -58,13 +58,13 @@ TEST_CASE("normals drawn from (1 + a cos 2(theta - theta_c))/(2 pi) give a and t
 }
 
 TEST_CASE("forces are counted over their mean in bins whose density integrates to one") {
-  // <f> = 2, so the forces are 0.1, 0.5, 0.9, 2.5 of the mean
-  const std::vector<GrainPair> pairs{pair_along(0, 0.2), pair_along(0, 1), pair_along(0, 1.8),
+  // <f> = 2, so the forces are 0.1, 0.6, 0.8, 2.5 of the mean
+  const std::vector<GrainPair> pairs{pair_along(0, 0.2), pair_along(0, 1.2), pair_along(0, 1.6),
                                      pair_along(0, 5)};
-  const ForceDistribution f = force_distribution(pairs, 4, 4);
+  const ForceDistribution f = force_distribution(pairs, 8, 4);
   CHECK(f.mean == doctest::Approx(2));
-  CHECK(f.width == 1);
-  CHECK(f.density == std::vector<double>{0.75, 0, 0.25, 0});
+  CHECK(f.width == 0.5);
+  CHECK(f.density == std::vector<double>{0.5, 1, 0, 0, 0, 0.5, 0, 0});
   // with a smaller range the largest force has no bin
   CHECK(force_distribution(pairs, 2, 2).density == std::vector<double>{0.75, 0});
   CHECK(force_distribution({}, 2, 2).mean == 0);

@@ -43,7 +43,9 @@ TEST_CASE("an ellipse has the aspect ratio of its axes, however it lies") {
   CHECK(grain_shape(polygon(4000, 5, 5)).circularity == doctest::Approx(1).epsilon(1e-5));
 }
 
-TEST_CASE("a rectangle has the aspect ratio of its sides") {
+TEST_CASE("a rectangle has the aspect ratio of its sides, however many points lie on them") {
+  CHECK(grain_shape(std::vector<Vec<2>>{{0, 0}, {1, 0}, {2, 0}, {6, 0}, {6, 2}, {0, 2}}).aspect_ratio ==
+        doctest::Approx(3));
   CHECK(grain_shape(std::vector<Vec<2>>{{0, 0}, {6, 0}, {6, 2}, {0, 2}}).aspect_ratio == doctest::Approx(3));
 }
 

@@ -1,0 +1,129 @@
+#include "softgrain/experiment/bpm_sample.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/geometry/cell_grid.hpp"
+
+namespace softgrain {
+namespace {
+
+bool equal_size(const Case& c) {
+  require(c.bpm.equal == "count" || c.bpm.equal == "size", "bpm.equal must be 'count' or 'size', got '{}'",
+          c.bpm.equal);
+  return c.bpm.equal == "size";
+}
+
+/// Which aggregate a grain gets: the next one, or that whose number of primaries fits its radius.
+int choice_of(const Case& c, int grain, double radius) {
+  if (!equal_size(c)) return grain % c.bpm.library;
+  const double smallest = c.sample.smallest_diameter / 2, largest = c.sample.largest_diameter / 2;
+  if (!(largest > smallest)) return 0;
+  const double share = (radius - smallest) / (largest - smallest);
+  return std::clamp(static_cast<int>(share * c.bpm.library), 0, c.bpm.library - 1);
+}
+
+std::vector<Wall<2>> box_walls(double side) {
+  return {{.point = {0, 0}, .normal = {0, 1}, .velocity = {}},
+          {.point = {0, side}, .normal = {0, -1}, .velocity = {}},
+          {.point = {0, 0}, .normal = {1, 0}, .velocity = {}},
+          {.point = {side, 0}, .normal = {-1, 0}, .velocity = {}}};
+}
+
+/// Moves grains as wholes out of the walls and out of each other once; returns the largest overlap met [m].
+double push_apart(RigidParticles<2>& particles, std::span<Vec<2>> shift, double widest) {
+  double worst = 0;
+  std::vector<Vec<2>> push(shift.size());
+  std::vector<double> deepest(shift.size(), 0);  // of a grain's overlaps: the one that moves it
+  const auto meet = [&](int grain, double overlap, const Vec<2>& away) {
+    worst = std::max(worst, overlap);
+    if (overlap <= deepest[grain]) return;
+    deepest[grain] = overlap;
+    push[grain] = overlap * away;
+  };
+  const auto& x = particles.position;
+  const auto& R = particles.radius;
+  for (int i = 0; i < particles.size(); ++i)
+    for (const Wall<2>& wall : particles.walls)
+      meet(particles.grain[i], R[i] - dot(x[i] - wall.point, wall.normal), wall.normal);
+  CellGrid<2>(x, 2 * widest).for_each_close_pair([&](int i, int j) {
+    const int a = particles.grain[i], b = particles.grain[j];
+    if (a == b) return;
+    const Vec<2> d = x[j] - x[i];
+    const double r = norm(d), overlap = R[i] + R[j] - r;
+    if (!(overlap > 0) || r == 0) return;
+    meet(a, overlap, (-0.6 / r) * d);
+    meet(b, overlap, (0.6 / r) * d);
+  });
+  for (std::size_t g = 0; g < shift.size(); ++g) shift[g] += push[g];
+  for (int i = 0; i < particles.size(); ++i) particles.position[i] += push[particles.grain[i]];
+  return worst;
+}
+
+/// Until no overlap is worth a tenth of a per cent of a primary's radius.
+double separate_grains(BpmSample& sample, const BoxSample& box) {
+  std::vector<Vec<2>> shift(box.grains.size());
+  const auto& radius = sample.particles.radius;
+  const double widest = *std::max_element(radius.begin(), radius.end());
+  const double tolerance = 1e-3 * *std::min_element(radius.begin(), radius.end());
+  constexpr int most_passes = 5000;
+  for (int pass = 0; push_apart(sample.particles, shift, widest) > tolerance; ++pass)
+    require(pass < most_passes,
+            "no places without overlap for {} grains of primaries; use a smaller sample.packing_fraction",
+            box.grains.size());
+  double furthest = 0;
+  for (std::size_t g = 0; g < shift.size(); ++g)
+    furthest = std::max(furthest, norm(shift[g]) / box.grains[g].radius);
+  return furthest;
+}
+
+}  // namespace
+
+std::vector<Aggregate> prepare_library(const Case& c) {
+  const bool by_size = equal_size(c);
+  const double ratio = c.sample.largest_diameter / c.sample.smallest_diameter;
+  std::vector<Aggregate> library;
+  for (int k = 0; k < c.bpm.library; ++k) {
+    // the middle of the k-th share of the radii, over the smallest radius
+    const double size = by_size ? 1 + (ratio - 1) * (k + 0.5) / c.bpm.library : 1;
+    library.push_back(prepare_aggregate(
+        {.primaries = static_cast<int>(std::lround(c.bpm.primaries * size * size)),
+         .size_ratio = c.bpm.size_ratio,
+         .gamma = c.bpm.exponent,
+         .seed = static_cast<std::uint64_t>(c.sample.seed) + (static_cast<std::uint64_t>(k) << 32)}));
+  }
+  return library;
+}
+
+BpmSample fill_box(const BoxSample& box, const std::vector<Aggregate>& library, const Case& c) {
+  BpmSample sample;
+  std::vector<Vec<2>> position;
+  std::vector<double> radius, mass;
+  std::vector<int> grain_of;
+  for (int g = 0; g < static_cast<int>(box.grains.size()); ++g) {
+    const PlacedGrain& grain = box.grains[g];
+    const Aggregate& aggregate = library[choice_of(c, g, grain.radius)];
+    const Vec<2> along{std::cos(grain.angle), std::sin(grain.angle)};
+    double squares = 0;
+    for (const double r : aggregate.radius) squares += r * r;
+    sample.begin.push_back(static_cast<int>(position.size()));
+    sample.mean_distance.push_back(grain.radius * aggregate.mean_distance);
+    for (std::size_t i = 0; i < aggregate.radius.size(); ++i) {
+      const Vec<2>& X = aggregate.position[i];
+      position.push_back(grain.centre + grain.radius * (X[0] * along + X[1] * perpendicular(along)));
+      radius.push_back(grain.radius * aggregate.radius[i]);
+      mass.push_back(c.grain.density * std::numbers::pi * radius.back() * radius.back() / squares);
+      grain_of.push_back(g);
+    }
+  }
+  sample.begin.push_back(static_cast<int>(position.size()));
+  sample.particles =
+      rigid_particles<2>(std::move(position), std::move(radius), std::move(mass), box_walls(box.side));
+  sample.particles.grain = std::move(grain_of);
+  sample.displaced = separate_grains(sample, box);
+  return sample;
+}
+
+}  // namespace softgrain

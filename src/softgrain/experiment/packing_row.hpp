@@ -1,0 +1,29 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "softgrain/experiment/simulation.hpp"
+#include "softgrain/math/vec.hpp"
+#include "softgrain/observe/contact_network.hpp"
+
+namespace softgrain {
+
+/// A box of grains as any model shows it.
+struct PackingView {
+  double width = 0, height = 0;        ///< of the box [m]
+  std::span<const double> radius;      ///< of the undeformed grains [m]
+  std::span<const Vec<2>> centre;      ///< of mass, of each grain [m]
+  std::span<const Vec<2>> outline;     ///< vertices of all grains, each counter-clockwise [m]
+  std::span<const int> outline_begin;  ///< (grains + 1) first vertex of each grain
+  std::span<const ContactPoint> contacts;
+  std::span<const double> mass;      ///< of the bodies that move: primaries, nodes or points [kg/m]
+  std::span<const Vec<2>> velocity;  ///< of the same bodies [m/s]
+  double density = 0;                ///< of the grains [kg/m^3]
+  double strain_rate = 0;            ///< [1/s]
+};
+
+/// What a packing shows, the same for both models: packing fractions, coordination, stress (contacts and
+/// motion, compression positive), inertial number, fabric, forces and mean shape.
+std::vector<Quantity> packing_row(const PackingView& packing);
+
+}  // namespace softgrain
