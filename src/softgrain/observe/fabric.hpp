@@ -7,7 +7,7 @@
 
 namespace softgrain {
 
-/// How the contacts between grains are oriented.
+/// How the contacts between grains are oriented (theory (64)).
 struct Fabric {
   Mat<2> tensor;         ///< 1/N_pairs sum n (x) n, trace 1; zero without pairs
   double anisotropy = 0; /**< a = 2 (F_1 - F_2) of its eigenvalues: the density of normals is about

@@ -5,7 +5,7 @@
 
 namespace softgrain {
 
-/// The shape of a grain's outline.
+/// The shape of a grain's outline (theory (65)).
 struct GrainShape {
   double area = 0;          ///< A [m^2]
   double perimeter = 0;     ///< P [m]

@@ -20,7 +20,7 @@ struct BranchForce {
 ///   force acts.
 std::vector<double> virial_pressure(std::span<const BranchForce> forces, std::span<const double> area);
 
-/// Stress of a packing in a box of the given area [m^2] (Love-Weber, theory (55)), compression positive:
+/// Stress of a packing in a box of the given area [m^2] (Love-Weber, theory (62)), compression positive:
 ///   sigma = (1/V) sum_c f_c (x) l_c  [Pa],
 /// with f_c the force of a on b and l_c from the centre [m] of grain a to that of grain b, or to the point of
 /// contact with a wall. At rest it is the stress on the walls.
