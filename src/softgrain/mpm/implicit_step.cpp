@@ -17,8 +17,9 @@ constexpr double largest_correction = 0.5;
 /// Iterations after which the tangent is made anew.
 constexpr int refactor_every = 8;
 
-/// What the first iteration is supposed to correct, over the mean radius.
-constexpr double first_correction = 0.01;
+/// Tolerance of NLGS over that of Newton's method: looser, and Newton needs more iterations; tighter, and
+/// NLGS sweeps in vain (docs/decisions/0013).
+constexpr double contact_share = 0.25;
 
 std::span<Wide> numbers(WideVectors& vectors) { return {&vectors[0][0], 2 * vectors.size()}; }
 
@@ -99,11 +100,10 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
 
   Failure failure = factor(dt, options.proximal, report);
   if (failure == Failure::indefinite_matrix) failure = factor(dt, 4 * options.proximal, report);
-  double correction = first_correction;
   for (int iteration = 1; failure == Failure::none; ++iteration) {
     if ((failure = residual(dt)) != Failure::none) break;
-    report.converged = solve_contacts(dt, options.forcing * correction, report);
-    correction = correct() / mean_radius_;
+    report.converged = solve_contacts(dt, report);
+    const double correction = correct() / mean_radius_;
     ++report.iterations;
     report.residual = correction;
     if (!(correction < largest_correction)) failure = Failure::too_far;
@@ -184,7 +184,7 @@ std::vector<double> ImplicitDynamics::friction_of_contacts() const {
 }
 
 /// Contacts at the present positions, and their impulses by NLGS with warm start. True if it converged.
-bool ImplicitDynamics::solve_contacts(double dt, double tolerance, SoftStepReport& report) {
+bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   grains.gather_outline(outline_.position);
   std::vector<OutlineContact> found = neighbours_.detect(grains, outline_);
   impulse = carried_impulses(grains, contacts, impulse, found);
@@ -194,7 +194,7 @@ bool ImplicitDynamics::solve_contacts(double dt, double tolerance, SoftStepRepor
     if (impulse[c][0] > 0) system.apply_impulse(c, impulse[c]);
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
-  solver.tolerance = std::max(solver.tolerance, tolerance);
+  solver.tolerance = contact_share * options.tolerance;
   const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction_of_contacts(), solver);
   report.sweeps += solved.sweeps;
   return solved.converged;

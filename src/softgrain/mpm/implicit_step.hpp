@@ -14,12 +14,11 @@ struct ImplicitOptions {
   int max_iterations = 40;  ///< of Newton's method
   double proximal =
       0.5;  ///< c of the term c p/l on the outline's diagonal of the tangent (p/l contact pressure)
-  int max_halvings = 8;  ///< of the time step before NumericalError
-  double forcing = 0.1;  ///< eta: NLGS stops at eta times Newton's last correction (inexact Newton) ...
-  SolverOptions solver{.max_sweeps = 500, .tolerance = 1e-7};  ///< ... or at this; unit: mean radius / dt
-  double friction = 0;                                         ///< mu between grains
-  double wall_friction = 0;                                    ///< mu against walls
-  Vec<2> gravity{};                                            ///< [m/s^2]
+  int max_halvings = 8;                     ///< of the time step before NumericalError
+  SolverOptions solver{.max_sweeps = 500};  ///< NLGS, to a quarter of Newton's tolerance
+  double friction = 0;                      ///< mu between grains
+  double wall_friction = 0;                 ///< mu against walls
+  Vec<2> gravity{};                         ///< [m/s^2]
 };
 
 /// Soft grains between walls by backward Euler with position-level contact (docs/theory.md, implicit MPM):
@@ -54,7 +53,7 @@ class ImplicitDynamics {
   Failure try_step(double dt, SoftStepReport& report);
   Failure factor(double dt, double proximal, SoftStepReport& report);
   Failure residual(double dt);
-  bool solve_contacts(double dt, double tolerance, SoftStepReport& report);
+  bool solve_contacts(double dt, SoftStepReport& report);
   double correct();
   Failure finish(double dt, SoftStepReport& report);
   void balance_momentum(double dt);
