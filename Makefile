@@ -11,7 +11,7 @@ demo: ## one soft grain between two plates: builds, simulates, draws (out/demo/f
 	cmake --build --preset release
 	build/release/softgrain run experiments/diametral_bpm/case.toml -o out/demo --force
 	build/release/softgrain plot out/demo
-	@echo "The pictures lie in out/demo/figures, the numbers in out/demo/series.csv"
+	@echo "The pictures lie in out/demo/figures, the numbers in out/demo/series.csv; open out/demo/report.html in a browser"
 
 test: ## builds with warnings as errors and runs all tests
 	@tools/install_dependencies.sh
@@ -26,6 +26,7 @@ check: ## format, layers, self-contained headers, clang-tidy
 	tools/check_layers --self-test
 	tools/check_layers
 	tools/check_headers
+	tools/check_viewer
 	tools/check_tidy
 
 bench: ## measures the speed, ours and the peers'

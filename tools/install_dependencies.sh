@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that softgrain needs; the only place that names them. Does nothing when all are there.
-#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, bench, clang
+#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, bench, viewer, clang
 #   tools/install_dependencies.sh --list                 the table below
 # Why each was chosen: docs/decisions/0002-dependencies.md
 set -euo pipefail
@@ -31,6 +31,8 @@ checks     clang-tidy              names and common mistakes
 checks     libomp-dev              omp.h for clang-tidy
 bench      libbox2d-dev            a peer to measure against
 bench      libsiconos-numerics-dev a peer to measure against
+viewer     chromium                tests the page of softgrain report
+viewer     npm                     tools/check_viewer
 clang      clang                   the second compiler (preset clang)
 clang      libomp-dev              its OpenMP
 TABLE
@@ -40,7 +42,7 @@ groups="build libraries tests pictures"
 while (($#)); do
   case "$1" in
     --list) table && exit 0 ;;
-    --with) groups+=" ${2:?--with needs a group: checks, bench or clang}" && shift 2 ;;
+    --with) groups+=" ${2:?--with needs a group: checks, bench, viewer or clang}" && shift 2 ;;
     *) sed -n '2,4s/^# //p' "$0" >&2 && exit 2 ;;
   esac
 done

@@ -41,7 +41,7 @@ export class Renderer {
 
   /** Throws where the browser has no WebGL2. */
   constructor(private canvas: HTMLCanvasElement) {
-    const gl = canvas.getContext("webgl2", { antialias: false, preserveDrawingBuffer: true });
+    const gl = canvas.getContext("webgl2", { antialias: false });
     if (!gl) throw new Error("no WebGL2");
     this.gl = gl;
     this.fill = new Program(gl, shaders.FILL_VERTEX, shaders.FILL_FRAGMENT);

@@ -102,8 +102,13 @@ class Browser:
         return result["result"].get("value")
 
     def wait(self, condition, limit=60):
+        """Until an expression in the page is true."""
+        self.until(lambda: self.run(condition), limit)
+
+    @staticmethod
+    def until(condition, limit=60):
         end = time.monotonic() + limit
-        while not self.run(condition):
+        while not condition():
             if time.monotonic() > end:
                 raise TimeoutError(condition)
             time.sleep(0.05)

@@ -1,0 +1,231 @@
+"""The page that `softgrain report` writes, in a headless Chromium. Usage: test_page.py PROGRAM [PICTURE_FOLDER]
+
+Exit code 77, for CTest's "skipped", where there is no Chromium or no Python package to read pictures and snapshots."""
+
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+try:
+    import h5py
+    import numpy as np
+    from matplotlib.image import imread
+except ImportError as error:
+    print(f"skipped: {error}; tools/install_dependencies.sh installs it")
+    sys.exit(77)
+if CHROMIUM is None:
+    print("skipped: the page is not tested in a browser: no chromium; tools/install_dependencies.sh --with viewer")
+    sys.exit(77)
+
+from browser import Browser  # noqa: E402
+
+PROGRAM = sys.argv[1]
+PICTURES = Path(sys.argv[2]) if len(sys.argv) > 2 else None
+SMALL = {
+    "compaction-mpm": ["sample.grains=16", "sample.packing_fraction=0.6", "mpm.cells=4", "output.snapshots=10"],
+    "diametral-bpm": ["bpm.primaries=100", "loading.max_strain=0.1", "loading.unload_at=[]", "output.snapshots=6"],
+}
+STAGE = "document.querySelector('.stage').getBoundingClientRect()"
+DOT = "document.querySelectorAll('.dot')[{}].getBoundingClientRect()"
+
+
+def make_runs(folder):
+    """One small run of each kind, and the pages of each and of both."""
+    for template, settings in SMALL.items():
+        case = subprocess.run([PROGRAM, "new", folder / template, "--template", template], check=True, text=True,
+                              capture_output=True).stdout.strip()
+        sets = [word for setting in [*settings, "output.vtk=false"] for word in ("--set", setting)]
+        subprocess.run([PROGRAM, "run", case, "-o", folder / template / "run", "--quiet", *sets], check=True)
+    shutil.copytree(folder / "compaction-mpm" / "run", folder / "soft")
+    shutil.copytree(folder / "diametral-bpm" / "run", folder / "bonded")
+    subprocess.run([PROGRAM, "report", folder / "soft", folder / "bonded", "-o", folder / "both.html"], check=True,
+                   capture_output=True)
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+        make_runs(cls.folder)
+        cls.browser = Browser(CHROMIUM)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.__exit__()
+        cls.temporary.cleanup()
+
+    def setUp(self):
+        self.browser.errors.clear()
+        self.browser.requests.clear()
+
+    def tearDown(self):
+        self.browser.resize(1440, 900)
+        self.browser.prefer("light")
+
+    def open(self, page="compaction-mpm/run/report.html"):
+        self.browser.open(self.folder / page)
+
+    def frame(self):
+        return int(self.browser.run("document.body.dataset.frame"))
+
+    def settle(self):
+        """Until the picture is that of the frame."""
+        self.browser.wait("document.body.dataset.drawn === document.body.dataset.frame")
+        self.browser.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+    def pixels(self, name="page", of=None):
+        """Red, green, blue (0 to 255) of the window, or of an element's rectangle in it."""
+        self.settle()
+        path = self.folder / f"{name}.png"
+        self.browser.screenshot(path)
+        if PICTURES:
+            PICTURES.mkdir(parents=True, exist_ok=True)
+            shutil.copy(path, PICTURES)
+        picture = 255 * imread(path)[:, :, :3]
+        if of is None:
+            return picture
+        x, y, width, height = (round(self.browser.run(f"{of}.{side}")) for side in ("x", "y", "width", "height"))
+        return picture[y:y + height, x:x + width]
+
+    def snapshot(self, index, run="compaction-mpm/run"):
+        return h5py.File(sorted((self.folder / run / "snap").glob("*.h5"))[index])
+
+    def test_says_nothing_and_asks_for_nothing(self):
+        for page in ("compaction-mpm/run/report.html", "diametral-bpm/run/report.html", "both.html"):
+            self.open(page)
+            self.browser.press("End", 35)
+            self.settle()
+        self.assertEqual(self.browser.errors, [])
+        self.assertEqual([url for url in self.browser.requests if not url.startswith("file://")], [])
+        self.assertEqual(len(self.browser.requests), 3)  # the pages themselves
+
+    def test_slider_moves_the_picture_and_the_dots(self):
+        self.open()
+        before, dot = self.pixels("first", STAGE), self.browser.run(DOT.format(0) + ".x")
+        slider = {side: self.browser.run(f"document.querySelector('.slider').getBoundingClientRect().{side}")
+                  for side in ("x", "y", "width", "height")}
+        middle = slider["y"] + slider["height"] / 2
+        self.browser.mouse("mousePressed", slider["x"] + slider["width"] - 3, middle, "left")
+        self.browser.mouse("mouseReleased", slider["x"] + slider["width"] - 3, middle, "left")
+        self.assertEqual(self.frame(), 10)
+        after = self.pixels("last", STAGE)
+        changed = np.abs(after - before).max(axis=2) > 40
+        self.assertGreater(changed.mean(), 0.1)
+        self.assertGreater(self.browser.run(DOT.format(0) + ".x"), dot + 300)
+
+    def test_lid_is_drawn_where_it_is(self):
+        """The rows of the lid in the picture are as far apart, over the box's width, as in the snapshots."""
+        rows, heights = [], []
+        for key, code, index in (("Home", 36, 0), ("End", 35, -1)):
+            self.open()
+            self.browser.press(key, code)
+            dark = self.pixels("lid", STAGE).max(axis=2) < 90
+            width = dark.any(axis=0).nonzero()[0]
+            rows.append((dark.mean(axis=1) > 0.5).nonzero()[0].min())
+            walls = self.snapshot(index)["scene/walls"][()]
+            heights.append(walls[:, [1, 3]].max())
+            metre = (width.max() - width.min()) / np.ptp(walls[:, [0, 2]])
+        self.assertAlmostEqual(rows[1] - rows[0], (heights[0] - heights[1]) * metre, delta=4)
+
+    def test_keyboard_steps_and_plays(self):
+        self.open()
+        for key, code, frame in (("ArrowRight", 39, 1), ("ArrowRight", 39, 2), ("ArrowLeft", 37, 1), ("End", 35, 10),
+                                 ("ArrowRight", 39, 10), ("Home", 36, 0)):
+            self.browser.press(key, code)
+            self.assertEqual(self.frame(), frame, key)
+        self.browser.press(" ", 32, " ")
+        self.browser.wait("document.body.dataset.frame === '10'", 20)
+
+    def test_click_on_a_curve_goes_to_that_time(self):
+        self.open()
+        for share, frame in ((0.995, 10), (0.5, 5), (0.02, 0)):
+            over = "document.querySelector('.u-over').getBoundingClientRect()"
+            x, y = (self.browser.run(f"{over}.{a} + {s} * {over}.{side}")
+                    for a, side, s in (("x", "width", share), ("y", "height", 0.9)))
+            self.browser.mouse("mousePressed", x, y, "left")
+            self.browser.mouse("mouseReleased", x, y, "left")
+            self.assertAlmostEqual(self.frame(), frame, delta=2)
+
+    def test_dot_lies_at_the_numbers_of_the_series(self):
+        self.open()
+        self.browser.press("End", 35)
+        header, *_, last = (self.folder / "compaction-mpm/run/series.csv").read_text().splitlines()
+        row = dict(zip([name.split("[")[0] for name in header.split(",")], map(float, last.split(","))))
+        reading = self.browser.run("document.querySelector('figcaption output').textContent")
+        stress, strain = reading.split(" at ")
+        value, unit = stress.split()
+        self.assertAlmostEqual(float(value) * {"kPa": 1e3, "MPa": 1e6, "Pa": 1}[unit] / row["stress_top"], 1, delta=0.01)
+        self.assertAlmostEqual(float(strain), row["strain"], delta=0.001)
+
+    def test_pointer_over_a_grain_shows_its_area(self):
+        self.open()
+        self.browser.press("End", 35)
+        self.settle()
+        scene = self.snapshot(-1)["scene"]
+        outline, owner = scene["outlines/position"][()], scene["outlines/grain"][()]
+        x, y = self.browser.run(f"(r => [r.x + r.width / 2, r.y + 0.7 * r.height])({STAGE})")
+        self.browser.mouse("mouseMoved", x, y)
+        lines = self.browser.run("[...document.querySelectorAll('.tip div')].map(d => d.textContent)")
+        grain = int(lines[0].split()[-1])
+        a = outline[owner == grain]
+        b = np.roll(a, -1, axis=0)
+        area = 1e6 * abs(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])) / 2
+        shown = float(next(line for line in lines if line.startswith("area")).removeprefix("area").split()[0])
+        self.assertAlmostEqual(shown / area, 1, delta=0.006)
+
+    def test_dark_and_light(self):
+        self.browser.prefer("dark")
+        self.open()
+        self.assertLess(self.pixels("dark")[5, 5].max(), 60)
+        self.browser.run("document.querySelector('.theme').click()")
+        self.assertGreater(self.pixels("light")[5, 5].min(), 200)
+
+    def test_colours_and_chains_can_be_chosen(self):
+        self.open()
+        self.browser.press("End", 35)
+        pictures = []
+        for key in ("pressure", "area", "contacts", "grain"):
+            self.browser.run(f"(s => {{ s.value = '{key}'; s.dispatchEvent(new Event('change')); }})"
+                             "(document.querySelector('.colouring'))")
+            pictures.append(self.pixels(key, STAGE))
+        for one, other in zip(pictures, pictures[1:]):
+            self.assertGreater((np.abs(one - other).max(axis=2) > 20).mean(), 0.1)
+        self.browser.run("document.querySelector('.chains input').click()")
+        red = lambda p: ((p[:, :, 0] > 180) & (p[:, :, 1] < 90) & (p[:, :, 2] < 110)).sum()  # noqa: E731
+        self.assertGreater(red(pictures[-1]), red(self.pixels("plain", STAGE)) + 500)
+
+    def test_phone(self):
+        self.browser.resize(390, 844, phone=True)
+        self.open()
+        self.browser.press("End", 35)
+        self.pixels("phone")
+        self.assertLessEqual(self.browser.run("document.documentElement.scrollWidth"), 390)
+        self.assertGreater(self.browser.run(f"{STAGE}.width"), 340)
+        self.assertGreater(self.browser.run("document.querySelector('.play').getBoundingClientRect().height"), 32)
+
+    def test_several_runs_share_the_plots_and_take_turns_in_the_picture(self):
+        self.open("both.html")
+        names = "[...document.querySelectorAll('.runs button')].map(b => b.textContent)"
+        self.assertEqual(self.browser.run(names), ["soft", "bonded"])
+        before = self.pixels("soft", STAGE)
+        self.browser.run("document.querySelectorAll('.runs button')[1].click()")
+        self.assertIn("100 primaries", self.browser.run("document.querySelector('.summary').textContent"))
+        self.assertGreater((np.abs(self.pixels("bonded")[:before.shape[0], :before.shape[1]] - before) > 40).mean(), 0.01)
+        self.assertEqual(self.browser.errors, [])
+
+    def test_series_can_be_taken_away_as_it_was(self):
+        self.open()
+        self.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(self.folder / "taken"))
+        self.browser.run("document.querySelector('.downloads a').click()")
+        taken = self.folder / "taken" / "run-series.csv"
+        self.browser.until(taken.exists)
+        self.assertEqual(taken.read_text(), (self.folder / "compaction-mpm/run/series.csv").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
