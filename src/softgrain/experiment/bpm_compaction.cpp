@@ -87,8 +87,8 @@ std::string BpmCompaction::early_end() const {
   return fmt::format(
       "the rigid primaries fill {:.3f} of the box, their random close packing, and overlap by more than {} "
       "of "
-      "their radius: no smaller box holds them",
-      solid_fraction(), largest_overlap);
+      "their radius in the mean: no smaller box holds them",
+      solid_fraction(), close_packing_overlap);
 }
 
 double BpmCompaction::solid_fraction() const {

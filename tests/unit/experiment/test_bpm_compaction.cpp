@@ -186,7 +186,8 @@ TEST_CASE("a packing is compacted until its primaries are close packed, whole, a
   CHECK(std::abs(error) < 2e-3 * work);
   CHECK(simulation.progress() == 1);
   CHECK(simulation.steps_done() < simulation.steps_planned());
-  CHECK(simulation.early_end().find("random close packing") != std::string::npos);
+  CHECK(simulation.early_end().find(
+            "random close packing, and overlap by more than 0.0005 of their radius") != std::string::npos);
   auto row = row_of(simulation);
   CHECK(row["solid_fraction"] > 0.82);
   CHECK(row["solid_fraction"] < 0.9);
