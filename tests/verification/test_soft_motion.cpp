@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "softgrain/mpm/equilibrium.hpp"
@@ -15,12 +16,13 @@ using namespace softgrain;
 
 namespace {
 
-/// Sulsky, Chen & Schreyer 1994: two disks fly at each other along the diagonal. Here they start close.
-SoftGrains two_disks() {
+/// Sulsky, Chen & Schreyer 1994: two disks fly at each other along the diagonal, at +-0.1 m/s along both
+/// axes. Here they start close.
+SoftGrains two_disks(int cells = 8, double v = 0.1) {
   constexpr double R = 0.2;
-  const auto shape = test::disk(8);
-  return {{test::placed(shape, R, {0.5 - 0.15, 0.5 - 0.15}, {0.1, 0.1}),
-           test::placed(shape, R, {0.5 + 0.15, 0.5 + 0.15}, {-0.1, -0.1})},
+  const auto shape = test::disk(cells);
+  return {{test::placed(shape, R, {0.5 - 0.15, 0.5 - 0.15}, {v, v}),
+           test::placed(shape, R, {0.5 + 0.15, 0.5 + 0.15}, {-v, -v})},
           make_law("neo_hookean", 1000, 0.3),
           1000,
           false};
@@ -53,7 +55,8 @@ struct Collision {
 
 template <class Dynamics>
 Collision collide(Dynamics dynamics, double dt, double duration) {
-  const double start = dynamics.grains.kinetic_energy(), cell = 2 * 3.14159 * 0.2 / 32;
+  const double start = dynamics.grains.kinetic_energy();
+  const double cell = 2 * 3.14159 * 0.2 / dynamics.grains.topology(0).grid.outline_nodes();
   Collision result;
   for (int k = 0; k * dt < duration; ++k)
     if (dynamics.step(dt).contacts > 0 && result.gap < 0) result.gap = distance_of(dynamics.grains) / cell;
@@ -63,6 +66,12 @@ Collision collide(Dynamics dynamics, double dt, double duration) {
   result.momentum = norm(dynamics.grains.momentum());
   result.parted = distance_of(dynamics.grains) > 0.02;
   return result;
+}
+
+/// A row of the table in experiments/diametral_mpm.
+void show(const std::string& integrator, int cells, double v, double dt, const Collision& c) {
+  MESSAGE("collision: integrator=", integrator, " cells=", cells, " v=", v, " dt_ms=", 1e3 * dt,
+          " kinetic=", c.kinetic, " total=", c.total, " momentum=", c.momentum, " gap=", c.gap);
 }
 
 /// A square on a plane tilted by `slope` [rad]: velocity down the plane after 0.1 s.
@@ -79,21 +88,36 @@ double slide(double slope, double mu) {
 }  // namespace
 
 TEST_CASE("two soft disks collide and part: no early contact, and the motion comes back") {
-  const double dt = stable_time_step(two_disks(), 0.1);
-  const Collision c = collide(ExplicitDynamics(two_disks(), {}, {}), dt, 1.6);
+  for (const int cells : {8, 16})
+    for (const double safety : {0.4, 0.1}) {
+      const double dt = stable_time_step(two_disks(cells), safety);
+      const Collision c = collide(ExplicitDynamics(two_disks(cells), {}, {}), dt, 1.6);
+      show("explicit", cells, 0.1, dt, c);
+      CHECK(c.parted);
+      CHECK(c.momentum < 1e-13);
+      CHECK(c.gap >= 0);
+      CHECK(c.gap < 0.1);
+      CHECK(c.total > 0.98);
+      CHECK(c.total < 1.001);
+      CHECK(c.kinetic > 0.8);  // the rest vibrates: they met at a quarter of the speed of sound
+    }
+}
+
+TEST_CASE("two soft disks that meet slowly hardly vibrate: 98 % of the motion comes back") {
+  constexpr double v = 0.0125;
+  const double dt = stable_time_step(two_disks(), 0.4);
+  const Collision c = collide(ExplicitDynamics(two_disks(8, v), {}, {}), dt, 1.6 * 0.1 / v);
+  show("explicit", 8, v, dt, c);
   CHECK(c.parted);
-  CHECK(c.momentum < 1e-13);
-  CHECK(c.gap >= 0);
-  CHECK(c.gap < 0.1);
-  CHECK(c.total > 0.98);
-  CHECK(c.total < 1);
-  CHECK(c.kinetic > 0.8);  // the rest vibrates: they met at a quarter of the speed of sound
+  CHECK(c.kinetic > 0.98);
+  CHECK(c.total < 1.001);
 }
 
 TEST_CASE("what backward Euler loses in a collision goes to zero with the step") {
   double last = 1;
   for (const double dt : {0.04, 0.02, 0.01}) {
     const Collision c = collide(ImplicitDynamics(two_disks(), {}, {}), dt, 1.6);
+    show("implicit", 8, 0.1, dt, c);
     CHECK(c.parted);
     CHECK(1 - c.total < 0.75 * last);
     last = 1 - c.total;
