@@ -247,17 +247,21 @@ TEST_CASE("a damaged snapshot is left out with a warning") {
   CHECK(Unpacked(run.payload).header.at("steps") == std::vector<int>{0, 2});
 }
 
-TEST_CASE("primaries beyond the limit are shown at fewer times, the last among them") {
+TEST_CASE(
+    "primaries beyond the limit are shown at fewer times, and long series in fewer rows, the last among "
+    "them") {
   const TemporaryDirectory folder;
-  std::vector<Scene> scenes(7);
+  std::vector<Scene> scenes(8);
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     scenes[k].particles["position"] = {2, std::vector<double>{0.1 * static_cast<double>(k), 0, 1, 1}};
     scenes[k].particles["radius"] = {1, std::vector<double>{0.1, 0.2}};
   }
-  const Unpacked page(
-      encode_run(run_of(folder, scenes), "press", {.particles = 6, .contacts = 10, .rows = 10}).payload);
-  CHECK(page.header.at("steps") == std::vector<int>{0, 3, 6});
+  const RunPaths paths = run_of(folder, scenes);
+  folder.file("series.csv", "step\n0\n1\n2\n3\n4\n");
+  const Unpacked page(encode_run(paths, "press", {.particles = 6, .contacts = 10, .rows = 2}).payload);
+  CHECK(page.header.at("steps") == std::vector<int>{0, 3, 6, 7});
   CHECK(page.header.at("snapshots_every") == 3);
+  CHECK(page.header.at("series") == "step\n0\n3\n4\n");
 }
 
 TEST_CASE("a page holds the title, escaped, and each payload, and nothing can end its script early") {
