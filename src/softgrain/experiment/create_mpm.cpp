@@ -73,7 +73,8 @@ std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
                             .wall_friction = c.contact.wall_friction};
     auto path = path_of(c, setup.walls, dt);
     return std::make_unique<MpmSimulation<ImplicitDynamics>>(
-        ImplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(path), dt);
+        ImplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(path), dt,
+        c.loading.max_stress);
   }
   require(c.mpm.integrator == "explicit", "mpm.integrator must be 'implicit' or 'explicit', got '{}'",
           c.mpm.integrator);
@@ -82,7 +83,8 @@ std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
       .damping_time = 0.5 * dt, .friction = c.contact.friction, .wall_friction = c.contact.wall_friction};
   auto path = path_of(c, setup.walls, dt);
   return std::make_unique<MpmSimulation<ExplicitDynamics>>(
-      ExplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(path), dt);
+      ExplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(path), dt,
+      c.loading.max_stress);
 }
 
 }  // namespace softgrain

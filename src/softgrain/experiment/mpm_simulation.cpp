@@ -14,20 +14,21 @@
 namespace softgrain {
 namespace {
 
-enum WallIndex : int { bottom, top };
+enum WallIndex : int { bottom, top, left, right };
 
-std::vector<int> outline_begins(const SoftGrains& grains) {
-  std::vector<int> begin;
-  for (int g = 0; g <= grains.size(); ++g)
-    begin.push_back(g < grains.size() ? grains.outline_begin(g) : grains.outline_size());
-  return begin;
-}
+/// Strain over which the stress is averaged that ends a run.
+constexpr double averaging_strain = 1e-3;
 
 }  // namespace
 
 template <class Dynamics>
-MpmSimulation<Dynamics>::MpmSimulation(Dynamics dynamics, std::unique_ptr<PlatePath> path, double dt)
-    : dynamics_(std::move(dynamics)), path_(std::move(path)), dt_(dt), height_start_(plate_distance()) {}
+MpmSimulation<Dynamics>::MpmSimulation(Dynamics dynamics, std::unique_ptr<PlatePath> path, double dt,
+                                       double max_stress)
+    : dynamics_(std::move(dynamics)),
+      path_(std::move(path)),
+      dt_(dt),
+      max_stress_(max_stress),
+      height_start_(plate_distance()) {}
 
 template <class Dynamics>
 double MpmSimulation<Dynamics>::plate_distance() const {
@@ -39,12 +40,12 @@ StepReport MpmSimulation<Dynamics>::step() {
   dynamics_.walls[top].velocity = {0, path_->plate_velocity(step_)};
   const SoftStepReport soft = dynamics_.step(dt_);
   ++step_;
-  sums_.force_bottom -= dynamics_.wall_impulse(bottom)[1];
-  sums_.force_top += dynamics_.wall_impulse(top)[1];
+  for (std::size_t w = 0; w < dynamics_.walls.size(); ++w)
+    sums_.impulse[w] -= dot(dynamics_.wall_impulse(static_cast<int>(w)), dynamics_.walls[w].normal);
   sums_.duration += dt_;
-  sums_.wall_work -= dot(dynamics_.wall_impulse(top), dynamics_.walls[top].velocity);
   sums_.iterations += soft.iterations;
   sums_.rejected += soft.rejected;
+  if (box()) judge();
   return {.contacts = soft.contacts,
           .sweeps = soft.sweeps,
           .residual_mean = soft.residual,
@@ -52,6 +53,22 @@ StepReport MpmSimulation<Dynamics>::step() {
           .overlap_mean = 0,
           .overlap_max = soft.penetration_max,
           .converged = soft.converged};
+}
+
+/// Ends the run at the largest stress asked for.
+template <class Dynamics>
+void MpmSimulation<Dynamics>::judge() {
+  const double width = dynamics_.walls[right].point[0] - dynamics_.walls[left].point[0];
+  const double force = dynamics_.wall_impulse(top)[1] - dynamics_.wall_impulse(bottom)[1];
+  const double strain = std::abs(dynamics_.walls[top].velocity[1]) * dt_ / plate_distance();
+  sums_.stress += std::min(1.0, strain / averaging_strain) * (force / (2 * dt_ * width) - sums_.stress);
+  sums_.ended = max_stress_ > 0 && sums_.stress >= max_stress_;
+}
+
+/// Outward force on a wall [N/m], mean since the last row.
+template <class Dynamics>
+double MpmSimulation<Dynamics>::wall_force(int wall) const {
+  return sums_.impulse[wall] / (sums_.duration > 0 ? sums_.duration : dt_);
 }
 
 template <class Dynamics>
@@ -65,32 +82,46 @@ double MpmSimulation<Dynamics>::stored_energy() const {
 }
 
 template <class Dynamics>
+std::vector<Quantity> MpmSimulation<Dynamics>::energies() const {
+  const WorkBudget& work = dynamics_.work;
+  const double kinetic = dynamics_.grains.kinetic_energy(), elastic = stored_energy();
+  const double by_integration = work.internal + work.inertia - elastic;
+  return {{"kinetic_energy", "J/m", kinetic},
+          {"elastic_energy", "J/m", elastic},
+          {"wall_work", "J/m", work.walls},
+          {"dissipation", "J/m", work.contacts + by_integration},
+          {"dissipation_contact", "J/m", work.contacts},
+          {"dissipation_integration", "J/m", by_integration},
+          {"energy_error", "J/m",
+           work.walls + work.gravity - kinetic - work.internal - work.inertia - work.contacts}};
+}
+
+template <class Dynamics>
+SoftView MpmSimulation<Dynamics>::view() const {
+  return {.grains = dynamics_.grains,
+          .walls = dynamics_.walls,
+          .contacts = dynamics_.contacts,
+          .impulse = dynamics_.impulse,
+          .impulse_time = dynamics_.impulse_time > 0 ? dynamics_.impulse_time : dt_};
+}
+
+template <class Dynamics>
 std::vector<Quantity> MpmSimulation<Dynamics>::observe() {
   const SoftGrains& grains = dynamics_.grains;
   std::vector<Vec<2>> outline;
   grains.gather_outline(outline);
-  double left = std::numeric_limits<double>::infinity(), right = -left, least_J = left;
-  for (const Vec<2>& x : outline) left = std::min(left, x[0]), right = std::max(right, x[0]);
+  double x_least = std::numeric_limits<double>::infinity(), x_largest = -x_least, least_J = x_least;
+  for (const Vec<2>& x : outline) x_least = std::min(x_least, x[0]), x_largest = std::max(x_largest, x[0]);
   double start_area = 0;
   for (int g = 0; g < grains.size(); ++g) {
     start_area += grains.mass(g) / grains.density;
     for (const PointState& point : point_states(grains, g)) least_J = std::min(least_J, determinant(point.F));
   }
-  const bool box = dynamics_.walls.size() > 2;
-  const double width = box ? dynamics_.walls[3].point[0] - dynamics_.walls[2].point[0] : right - left;
-  const double height = plate_distance(), area = total_area(outline, outline_begins(grains));
-  std::vector<std::pair<int, int>> pairs;
-  int contacts = 0;
-  for (std::size_t c = 0; c < dynamics_.contacts.size(); ++c) {
-    const OutlineContact& contact = dynamics_.contacts[c];
-    if (!(dynamics_.impulse[c][0] > 0)) continue;
-    ++contacts;
-    if (contact.wall < 0)
-      pairs.emplace_back(grains.grain_of_vertex(contact.vertex), grains.grain_of_vertex(contact.master[0]));
-  }
-  const double duration = sums_.duration > 0 ? sums_.duration : dt_;
-  const double force_bottom = sums_.force_bottom / duration, force_top = sums_.force_top / duration;
-  const double kinetic = grains.kinetic_energy(), elastic = stored_energy();
+  const double width =
+      box() ? dynamics_.walls[right].point[0] - dynamics_.walls[left].point[0] : x_largest - x_least;
+  const double height = plate_distance();
+  const auto contacts =
+      std::ranges::count_if(dynamics_.impulse, [](const Vec<2>& impulse) { return impulse[0] > 0; });
   std::vector<Quantity> row{
       {"step", "", static_cast<double>(step_)},
       {"time", "s", time()},
@@ -98,79 +129,28 @@ std::vector<Quantity> MpmSimulation<Dynamics>::observe() {
       {"leg", "", static_cast<double>(path_->leg(std::max<std::int64_t>(step_ - 1, 0)))},
       {"wall_height", "m", height},
       {"width", "m", width},
-      {"stress_bottom", "Pa", force_bottom / width},
-      {"stress_top", "Pa", force_top / width},
-      {"force_bottom", "N/m", force_bottom},
-      {"force_top", "N/m", force_top},
-      {"contacts", "", static_cast<double>(contacts)},
-      {"area_ratio", "", area / start_area},
-      {"least_J", "", least_J},
-      {"kinetic_energy", "J/m", kinetic},
-      {"elastic_energy", "J/m", elastic},
-      {"wall_work", "J/m", sums_.wall_work},
-      {"dissipation", "J/m", sums_.wall_work - kinetic - elastic},
-      {"iterations", "", sums_.iterations * dt_ / duration},
-      {"rejected_steps", "", sums_.rejected},
+      {"stress_bottom", "Pa", wall_force(bottom) / width},
+      {"stress_top", "Pa", wall_force(top) / width},
+      {"force_bottom", "N/m", wall_force(bottom)},
+      {"force_top", "N/m", wall_force(top)},
   };
-  if (box) {
-    row.push_back({"phi_0", "", start_area / (width * height)});
-    row.push_back({"phi", "", area / (width * height)});
-    row.push_back({"z", "", coordination_number(std::move(pairs), grains.size())});
-  }
-  sums_.force_bottom = sums_.force_top = sums_.duration = sums_.iterations = 0;
-  return row;
-}
-
-/// Material points as disks of their present area, and the outlines.
-template <class Dynamics>
-Scene MpmSimulation<Dynamics>::scene() const {
-  const SoftGrains& grains = dynamics_.grains;
-  std::vector<Vec<2>> position;
-  std::vector<double> radius, pressure, dilatation, stress;
-  std::vector<std::int64_t> grain_of_point, grain_of_vertex;
-  for (int g = 0; g < grains.size(); ++g) {
-    const Topology& shape = grains.topology(g);
-    const std::vector<PointState> states = point_states(grains, g);
-    for (std::size_t p = 0; p < states.size(); ++p) {
-      Vec<2> x;
-      for (int a = 0; a < 4; ++a)
-        x += shape.points[p].shape[a] * grains.node_position(g, shape.grid.cell[p / 4][a]);
-      const double J = determinant(states[p].F);
-      position.push_back(x);
-      radius.push_back(grains.radius(g) * std::sqrt(J * shape.points[p].volume / std::numbers::pi));
-      pressure.push_back(states[p].pressure);
-      dilatation.push_back(J);
-      stress.insert(stress.end(), states[p].stress.c.begin(), states[p].stress.c.end());
-      grain_of_point.push_back(g);
-    }
-    grain_of_vertex.insert(grain_of_vertex.end(), grains.outline_end(g) - grains.outline_begin(g), g);
-  }
-  std::vector<Vec<2>> outline, forces;
-  grains.gather_outline(outline);
-  forces = contact_forces(grains, dynamics_.contacts, dynamics_.impulse, dt_);
-  Scene scene;
-  scene.particles["position"] = to_array<2>(position);
-  scene.particles["radius"] = {1, std::move(radius)};
-  scene.particles["pressure"] = {1, std::move(pressure)};
-  scene.particles["J"] = {1, std::move(dilatation)};
-  scene.particles["stress"] = {4, std::move(stress)};
-  scene.particles["grain"] = {1, std::move(grain_of_point)};
-  scene.outlines["position"] = to_array<2>(outline);
-  scene.outlines["force"] = to_array<2>(forces);
-  scene.outlines["grain"] = {1, std::move(grain_of_vertex)};
-  const auto& walls = dynamics_.walls;
-  const double low = walls[bottom].point[1], high = walls[top].point[1];
-  double left = std::numeric_limits<double>::infinity(), right = -left;
-  for (const Vec<2>& x : outline) left = std::min(left, x[0]), right = std::max(right, x[0]);
-  if (walls.size() > 2) {
-    left = walls[2].point[0], right = walls[3].point[0];
-    scene.wall_segments = {left, low, left, high, right, low, right, high};
+  const auto append = [&row](const std::vector<Quantity>& more) {
+    row.insert(row.end(), more.begin(), more.end());
+  };
+  if (box()) {
+    row.push_back({"stress_side", "Pa", (wall_force(left) + wall_force(right)) / 2 / height});
+    append(soft_packing_row(view(), dynamics_.walls[top].velocity[1] / height));
   } else {
-    const double margin = 0.1 * (right - left);
-    left -= margin, right += margin;
+    row.push_back({"area_ratio", "", total_area(outline, outline_begins(grains)) / start_area});
   }
-  scene.wall_segments.insert(scene.wall_segments.end(), {left, low, right, low, left, high, right, high});
-  return scene;
+  row.push_back({"least_J", "", least_J});
+  row.push_back({"contacts", "", static_cast<double>(contacts)});
+  append(energies());
+  row.push_back({"iterations", "", sums_.duration > 0 ? sums_.iterations * dt_ / sums_.duration : 0});
+  row.push_back({"rejected_steps", "", sums_.rejected});
+  sums_.impulse = {};
+  sums_.duration = sums_.iterations = 0;
+  return row;
 }
 
 template <class Dynamics>
@@ -199,8 +179,12 @@ Checkpoint MpmSimulation<Dynamics>::checkpoint() const {
   std::vector<Vec<2>> wall_point;
   for (const Wall<2>& wall : dynamics_.walls) wall_point.push_back(wall.point);
   state.arrays["wall_point"] = to_array<2>(wall_point);
-  state.arrays["sums"] = {1, std::vector<double>{sums_.force_bottom, sums_.force_top, sums_.duration,
-                                                 sums_.wall_work, sums_.iterations, sums_.rejected}};
+  const WorkBudget& work = dynamics_.work;
+  std::vector<double> sums(sums_.impulse.begin(), sums_.impulse.end());
+  sums.insert(sums.end(),
+              {sums_.duration, sums_.iterations, sums_.rejected, sums_.stress, sums_.ended ? 1.0 : 0.0,
+               dynamics_.impulse_time, work.walls, work.gravity, work.internal, work.contacts, work.inertia});
+  state.arrays["sums"] = {1, std::move(sums)};
   return state;
 }
 
@@ -243,9 +227,20 @@ void MpmSimulation<Dynamics>::restore(const Checkpoint& state) {
   std::vector<Vec<2>> wall_point(dynamics_.walls.size());
   from_array<2>(state, "wall_point", wall_point);
   for (std::size_t w = 0; w < wall_point.size(); ++w) dynamics_.walls[w].point = wall_point[w];
-  std::vector<Vec<1>> sums(6);
+  std::vector<Vec<1>> sums(15);
   from_array<1>(state, "sums", sums);
-  sums_ = {sums[0][0], sums[1][0], sums[2][0], sums[3][0], sums[4][0], sums[5][0]};
+  for (std::size_t w = 0; w < 4; ++w) sums_.impulse[w] = sums[w][0];
+  sums_.duration = sums[4][0];
+  sums_.iterations = sums[5][0];
+  sums_.rejected = sums[6][0];
+  sums_.stress = sums[7][0];
+  sums_.ended = sums[8][0] != 0;
+  dynamics_.impulse_time = sums[9][0];
+  dynamics_.work = {.walls = sums[10][0],
+                    .gravity = sums[11][0],
+                    .internal = sums[12][0],
+                    .contacts = sums[13][0],
+                    .inertia = sums[14][0]};
   step_ = state.step;
 }
 

@@ -58,6 +58,7 @@ SoftStepReport ExplicitDynamics::step(double dt) {
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
   const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction, solver);
+  impulse_time = dt;
   write_outline();
   drift(dt);
   grains.gather_outline(outline_.position);

@@ -38,7 +38,8 @@ class ExplicitDynamics {
   ExplicitOptions options;
   std::vector<OutlineContact> contacts;
   std::vector<Vec<2>> impulse;
-  WorkBudget work;  ///< since the start; there is no `inertia`
+  double impulse_time = 0;  ///< the step over which they acted [s]
+  WorkBudget work;          ///< since the start; there is no `inertia`
 
  private:
   void kick(double dt);

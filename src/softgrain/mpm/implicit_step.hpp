@@ -45,6 +45,7 @@ class ImplicitDynamics {
   ImplicitOptions options;
   std::vector<OutlineContact> contacts;  ///< at the end of the last step
   std::vector<Vec<2>> impulse;           ///< theirs (p_n, p_t) [N s/m]
+  double impulse_time = 0;               ///< the (sub-)step over which they acted [s]
   WorkBudget work;                       ///< since the start
 
  private:
@@ -70,6 +71,8 @@ class ImplicitDynamics {
   std::vector<Vec<2>> outline_increment_;
   OutlineState outline_;
   std::vector<Wall<2>> walls_start_;
+  std::vector<OutlineContact> contacts_start_;
+  std::vector<Vec<2>> impulse_start_;
   std::vector<Vec<2>> wall_impulse_;
   int failed_grain_ = -1;
 };

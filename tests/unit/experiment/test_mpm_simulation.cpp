@@ -98,9 +98,9 @@ TEST_CASE("the coordination number of a packing is that of the pairs that carry 
   const auto& bodies = std::get<std::vector<std::int64_t>>(state.arrays.at("contact_bodies").values);
   const auto& impulse = std::get<std::vector<double>>(state.arrays.at("contact_impulse").values);
   bool touch[5][5] = {};
-  for (std::size_t c = 0; c < bodies.size() / 4; ++c)
-    if (bodies[4 * c + 1] < 0 && impulse[2 * c] > 0)  // 12 outline vertices a grain
-      touch[bodies[4 * c] / 12][bodies[4 * c + 2] / 12] = touch[bodies[4 * c + 2] / 12][bodies[4 * c] / 12] =
+  for (std::size_t c = 0; c < bodies.size() / 6; ++c)
+    if (bodies[6 * c + 1] < 0 && impulse[2 * c] > 0)  // 12 outline vertices a grain
+      touch[bodies[6 * c] / 12][bodies[6 * c + 2] / 12] = touch[bodies[6 * c + 2] / 12][bodies[6 * c] / 12] =
           true;
   int sides = 0;
   for (const auto& row : touch)

@@ -137,7 +137,7 @@ TEST_CASE("the normal is the gradient of the gap, by the slave and by each verte
     for (int k = -1; k < 4; ++k) {
       const int moving = k < 0 ? c.vertex : c.master[k];
       const double weight = k < 0 ? 1 : -c.weights()[k];
-      for (std::size_t d = 0; d < 2; ++d) {
+      for (int d = 0; d < 2; ++d) {
         const double x = state.position[moving][d];
         state.position[moving][d] = x + h;
         const double more = gap_of(c.vertex);

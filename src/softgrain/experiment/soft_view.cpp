@@ -1,0 +1,129 @@
+#include "softgrain/experiment/soft_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "softgrain/experiment/arrays.hpp"
+#include "softgrain/experiment/packing_row.hpp"
+#include "softgrain/math/tensor.hpp"
+#include "softgrain/mpm/elastic_contacts.hpp"
+#include "softgrain/mpm/equilibrium.hpp"
+
+namespace softgrain {
+namespace {
+
+enum WallIndex : int { bottom, top, left, right };
+
+}  // namespace
+
+std::vector<int> outline_begins(const SoftGrains& grains) {
+  std::vector<int> begin;
+  for (int g = 0; g <= grains.size(); ++g)
+    begin.push_back(g < grains.size() ? grains.outline_begin(g) : grains.outline_size());
+  return begin;
+}
+
+std::vector<ContactPoint> contact_points(const SoftView& view) {
+  const SoftGrains& grains = view.grains;
+  std::vector<Vec<2>> x;
+  grains.gather_outline(x);
+  std::vector<ContactPoint> points;
+  for (std::size_t c = 0; c < view.contacts.size(); ++c) {
+    const OutlineContact& contact = view.contacts[c];
+    if (!(view.impulse[c][0] > 0)) continue;
+    const int v = contact.vertex, g = grains.grain_of_vertex(v), begin = grains.outline_begin(g),
+              n = grains.outline_end(g) - begin;
+    const Vec<2>&before = x[begin + (v - begin + n - 1) % n], &after = x[begin + (v - begin + 1) % n];
+    const bool wall = contact.wall >= 0;
+    points.push_back({.a = g,
+                      .b = wall ? wall_index(contact.wall) : grains.grain_of_vertex(contact.master[0]),
+                      .force = (-1 / view.impulse_time) * impulse_vector(contact, view.impulse[c]),
+                      .normal = -contact.normal,
+                      .position = x[v],
+                      .length = (wall ? 0.5 : 0.25) * (norm(x[v] - before) + norm(x[v] - after))});
+  }
+  return points;
+}
+
+std::vector<Quantity> soft_packing_row(const SoftView& view, double strain_rate) {
+  const SoftGrains& grains = view.grains;
+  std::vector<double> radius, mass;
+  std::vector<Vec<2>> centre(grains.size()), velocity, outline;
+  for (int g = 0; g < grains.size(); ++g) {
+    radius.push_back(grains.radius(g));
+    const auto [batch, lane] = grains.batch_of(g);
+    for (int i = 0; i < grains.topology(g).grid.nodes(); ++i) {
+      mass.push_back(grains.node_mass(*batch, i)[lane]);
+      velocity.push_back({batch->velocity[i][0][lane], batch->velocity[i][1][lane]});
+      centre[g] += (mass.back() / grains.mass(g)) * grains.node_position(g, i);
+    }
+  }
+  grains.gather_outline(outline);
+  const std::vector<int> begin = outline_begins(grains);
+  const std::vector<ContactPoint> contacts = contact_points(view);
+  return packing_row({.width = view.walls[right].point[0] - view.walls[left].point[0],
+                      .height = view.walls[top].point[1] - view.walls[bottom].point[1],
+                      .radius = radius,
+                      .centre = centre,
+                      .outline = outline,
+                      .outline_begin = begin,
+                      .contacts = contacts,
+                      .mass = mass,
+                      .velocity = velocity,
+                      .density = grains.density,
+                      .strain_rate = strain_rate});
+}
+
+Scene soft_scene(const SoftView& view) {
+  const SoftGrains& grains = view.grains;
+  std::vector<Vec<2>> position;
+  std::vector<double> radius, pressure, dilatation, stress;
+  std::vector<std::int64_t> grain_of_point, grain_of_vertex;
+  for (int g = 0; g < grains.size(); ++g) {
+    const Topology& shape = grains.topology(g);
+    const std::vector<PointState> states = point_states(grains, g);
+    for (std::size_t p = 0; p < states.size(); ++p) {
+      Vec<2> x;
+      for (int a = 0; a < 4; ++a)
+        x += shape.points[p].shape[a] * grains.node_position(g, shape.grid.cell[p / 4][a]);
+      const double J = determinant(states[p].F);
+      position.push_back(x);
+      radius.push_back(grains.radius(g) * std::sqrt(J * shape.points[p].volume / std::numbers::pi));
+      pressure.push_back(states[p].pressure);
+      dilatation.push_back(J);
+      stress.insert(stress.end(), states[p].stress.c.begin(), states[p].stress.c.end());
+      grain_of_point.push_back(g);
+    }
+    grain_of_vertex.insert(grain_of_vertex.end(), grains.outline_end(g) - grains.outline_begin(g), g);
+  }
+  std::vector<Vec<2>> outline, forces;
+  grains.gather_outline(outline);
+  forces = contact_forces(grains, view.contacts, view.impulse, view.impulse_time);
+  Scene scene;
+  scene.particles["position"] = to_array<2>(position);
+  scene.particles["radius"] = {1, std::move(radius)};
+  scene.particles["pressure"] = {1, std::move(pressure)};
+  scene.particles["J"] = {1, std::move(dilatation)};
+  scene.particles["stress"] = {4, std::move(stress)};
+  scene.particles["grain"] = {1, std::move(grain_of_point)};
+  scene.outlines["position"] = to_array<2>(outline);
+  scene.outlines["force"] = to_array<2>(forces);
+  scene.outlines["grain"] = {1, std::move(grain_of_vertex)};
+  const auto& walls = view.walls;
+  const double low = walls[bottom].point[1], high = walls[top].point[1];
+  double begin = std::numeric_limits<double>::infinity(), end = -begin;
+  for (const Vec<2>& x : outline) begin = std::min(begin, x[0]), end = std::max(end, x[0]);
+  if (walls.size() > 2) {
+    begin = walls[left].point[0], end = walls[right].point[0];
+    scene.wall_segments = {begin, low, begin, high, end, low, end, high};
+  } else {
+    const double margin = 0.1 * (end - begin);
+    begin -= margin, end += margin;
+  }
+  scene.wall_segments.insert(scene.wall_segments.end(), {begin, low, end, low, begin, high, end, high});
+  return scene;
+}
+
+}  // namespace softgrain

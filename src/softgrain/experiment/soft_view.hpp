@@ -1,0 +1,35 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "softgrain/experiment/simulation.hpp"
+#include "softgrain/mpm/outline_contacts.hpp"
+#include "softgrain/mpm/soft_grains.hpp"
+#include "softgrain/observe/contact_network.hpp"
+
+namespace softgrain {
+
+/// Soft grains between walls as both integrators hold them.
+struct SoftView {
+  const SoftGrains& grains;
+  std::span<const Wall<2>> walls;  ///< bottom, top and, in a box, left, right
+  std::span<const OutlineContact> contacts;
+  std::span<const Vec<2>> impulse;  ///< theirs (p_n, p_t) [N s/m] ...
+  double impulse_time = 0;          ///< ... over this time [s]
+};
+
+/// (grains + 1) first outline vertex of each grain.
+std::vector<int> outline_begins(const SoftGrains& grains);
+
+/// Contacts that carry impulse. A vertex takes half of the segments beside it, and half of that where the
+/// other grain's vertices touch too.
+std::vector<ContactPoint> contact_points(const SoftView& view);
+
+/// What a box of soft grains shows (packing_row), at a strain rate [1/s].
+std::vector<Quantity> soft_packing_row(const SoftView& view, double strain_rate);
+
+/// Material points as disks of their present area, the outlines with the contact forces on their vertices,
+/// and the walls.
+Scene soft_scene(const SoftView& view);
+
+}  // namespace softgrain

@@ -1,0 +1,53 @@
+#include "softgrain/mpm/implicit_step.hpp"
+
+namespace softgrain {
+
+/// What Newton's tolerance left of sum_i m_i (v - v_n)_i = dt f_ext + H p is given back to each grain as a
+/// whole.
+void ImplicitDynamics::balance_momentum(double dt) {
+  const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
+  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+    GrainBatch& batch = grains.batches[b];
+    WideVectors missing(batch.position.size());
+    grains.scatter_outline(force, batch, missing);
+    Wide mass = 0.0;
+    Vec<2, Wide> sum{};
+    for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
+      const Wide m = grains.node_mass(batch, i);
+      mass += m;
+      for (int d = 0; d < 2; ++d)
+        sum[d] += dt * (missing[i][d] + m * Wide(options.gravity[d])) -
+                  m * (batch.velocity[i][d] - velocity_start_[b][i][d]);
+    }
+    for (Vec<2, Wide>& v : batch.velocity) v += (1.0 / mass) * sum;
+  }
+}
+
+void ImplicitDynamics::add_work(double dt) {
+  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+    const GrainBatch& batch = grains.batches[b];
+    Wide internal = 0.0, inertia = 0.0, gravity = 0.0;
+    for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
+      const Wide m = grains.node_mass(batch, i);
+      const Vec<2, Wide> moved = batch.position[i] - start_[b][i];
+      const Vec<2, Wide> dv = batch.velocity[i] - velocity_start_[b][i];
+      internal += dot(force_[b][i], moved);
+      inertia += 0.5 * m * dot(dv, dv);
+      gravity += m * (options.gravity[0] * moved[0] + options.gravity[1] * moved[1]);
+    }
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) {
+      work.internal += internal[lane];
+      work.inertia += inertia[lane];
+      work.gravity += gravity[lane];
+    }
+  }
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const Vec<2> P = impulse_vector(contacts[c], impulse[c]);
+    work.contacts -= dot(P, relative_displacement(contacts[c], outline_)) / dt;
+    if (contacts[c].wall < 0) continue;
+    wall_impulse_[contacts[c].wall] -= P;
+    work.walls += dot(P, walls[contacts[c].wall].velocity);
+  }
+}
+
+}  // namespace softgrain
