@@ -58,7 +58,7 @@ BoxSample sample_box(const BoxSampleOptions& options) {
   sample.side = std::sqrt(area / options.packing_fraction);
   for (const PlacedGrain& grain : sample.grains)
     require(2 * (1 + options.clearance) * grain.radius <= sample.side,
-            "a grain of diameter {} m has no room in a box of {} m; use a smaller packing fraction",
+            "a grain of diameter {} m has no room in a box of {} m; use a smaller sample.packing_fraction",
             2 * grain.radius, sample.side);
   for (int i = 0; i < options.grains; ++i) {
     sample.grains[i].angle = 2 * std::numbers::pi * random_uniform(options.seed, Stream::angles, i);
@@ -70,8 +70,8 @@ BoxSample sample_box(const BoxSampleOptions& options) {
   for (int pass = 0; pass < most_passes; ++pass)
     if (push_apart(sample, options.clearance, options.largest / 2) < tolerance) return sample;
   throw UsageError(
-      fmt::format("no places without overlap for {} grains at packing fraction {}; use a smaller one",
-                  options.grains, options.packing_fraction));
+      fmt::format("sample.packing_fraction = {}: no places without overlap for {} grains; use a smaller one",
+                  options.packing_fraction, options.grains));
 }
 
 BoxSample sample_box(const Case& c) {

@@ -1,0 +1,70 @@
+#include <doctest/doctest.h>
+
+#include <string>
+#include <vector>
+
+#include "support/subprocess.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace fs = std::filesystem;
+using softgrain::test::ProcessResult;
+using softgrain::test::TemporaryDirectory;
+
+namespace {
+
+constexpr auto box =
+    "[experiment]\nloading = \"compaction\"\nmodel = \"mpm\"\n[mpm]\ncells = 4\n[sample]\ngrains = 10\n"
+    "[loading]\nwall_velocity = \"5 m/s\"\nunload_at = []\nmax_strain = 0.3\n"
+    "[output]\nvtk = false\nreport = false\n";
+
+/// Runs the box of soft grains with the settings in `directory`/out.
+ProcessResult run_box(const TemporaryDirectory& directory, const std::vector<std::string>& settings) {
+  directory.file("box.toml", box);
+  std::vector<std::string> command{SOFTGRAIN_PROGRAM, "run", "box.toml", "-o", "out", "--quiet"};
+  for (const std::string& setting : settings) command.insert(command.end(), {"--set", setting});
+  return softgrain::test::run(command, {}, directory.path().string());
+}
+
+}  // namespace
+
+TEST_CASE("soft grains that cannot be are refused with the key, the value and what would do") {
+  struct Mistake {
+    std::string setting, value, remedy;
+  };
+  for (const auto& [setting, value, remedy] : std::vector<Mistake>{
+           {"mpm.young_modulus=\"-1 MPa\"", "\"-1 MPa\"", "it must be > 0; the default is \"10 MPa\""},
+           {"mpm.poisson_ratio=0.5", "0.5", "it must be in (-1, 0.5)"},
+           {"mpm.poisson_ratio=0.7", "0.7", "it must be in (-1, 0.5)"},
+           {"mpm.cells=1", "1", "it must be in [2, 200]"},
+           {"mpm.law=\"rubber\"", "'rubber'", "takes one of \"neo_hookean\""},
+           {"mpm.integrator=\"newmark\"", "'newmark'", "takes one of \"implicit\", \"explicit\""},
+           {"sample.packing_fraction=0.9", "0.9", "it must be in (0, 0.8)"},
+           {"sample.packing_fraction=0.79", "0.79",
+            "no places without overlap for 10 grains; use a smaller one"},
+       }) {
+    const TemporaryDirectory directory;
+    const ProcessResult result = run_box(directory, {setting});
+    CAPTURE(setting);
+    CAPTURE(result.err);
+    CHECK(result.exit_code == 2);
+    CHECK(result.err.find(setting.substr(0, setting.find('='))) != std::string::npos);
+    CHECK(result.err.find(value) != std::string::npos);
+    CHECK(result.err.find(remedy) != std::string::npos);
+    CHECK_FALSE(fs::exists(directory.path() / "out" / "run.json"));
+  }
+}
+
+TEST_CASE(
+    "an explicit step that is too long ends with exit code 3, the grain's name and an intact snapshot") {
+  const TemporaryDirectory directory;
+  const ProcessResult result =
+      run_box(directory, {"mpm.integrator=\"explicit\"", "mpm.time_step=\"1.2 us\""});
+  CHECK(result.exit_code == 3);
+  CHECK(result.err.find("a material point of grain ") != std::string::npos);
+  CHECK(result.err.find("use a smaller time step") != std::string::npos);
+  CHECK(result.err.find("the last good state is out/snap/s0000") != std::string::npos);
+  const ProcessResult verified =
+      softgrain::test::run({SOFTGRAIN_PROGRAM, "verify", "out"}, {}, directory.path().string());
+  CHECK(verified.exit_code == 0);
+  CHECK(verified.out.find("snapshots are intact") != std::string::npos);
+}
