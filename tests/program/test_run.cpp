@@ -67,11 +67,12 @@ TEST_CASE("softgrain run leaves a directory that tells all about the run, beside
   const auto result = softgrain_run(directory, {"run", "small.toml", "--set", "output.snapshots=4"});
   CHECK(result.exit_code == 0);
   CHECK(result.out.starts_with("converged "));
-  CHECK(result.out.find("next: softgrain plot small_run") != std::string::npos);
+  CHECK(result.out.find("next: look at small_run/report.html in a browser, or softgrain plot small_run") !=
+        std::string::npos);
   CHECK(result.err.find(" 50 %  strain ") != std::string::npos);
   const fs::path root = directory.path() / "small_run";
-  for (const char* name :
-       {"case.toml", "run.json", "series.csv", "log.txt", "run.pvd", "vtk/particles_000000.vtp"})
+  for (const char* name : {"case.toml", "run.json", "series.csv", "log.txt", "run.pvd", "report.html",
+                           "vtk/particles_000000.vtp"})
     CHECK(fs::exists(root / name));
   const auto json = nlohmann::json::parse(read_text(root / "run.json"));
   CHECK(json.at("state") == "done");
