@@ -1,5 +1,5 @@
-// Bundles src/ into one file, dist/report_template.html (or the file given). `softgrain report` puts the title and the
-// runs in the places of <!--title--> and <!--runs-->.
+// Bundles src/ into one file, dist/report_template.html (or the file given). `softgrain report` puts the title
+// and the runs in the places of <!--title--> and <!--runs-->.
 import { build } from "esbuild";
 import { readFile, writeFile, mkdir } from "node:fs/promises";
 import { dirname } from "node:path";

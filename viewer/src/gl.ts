@@ -32,7 +32,7 @@ export class Program {
   }
 }
 
-/** Numbers per vertex (or per instance): `sizes` floats for each attribute, in the order of locations 0, 1, ... */
+/** Numbers per vertex (or per instance): `sizes` floats for attribute 0, 1, ... */
 export class Buffer {
   private array: WebGLVertexArrayObject;
   private data: WebGLBuffer;

@@ -1,7 +1,7 @@
 // What `softgrain report` put into the page: one <script class="run"> for each run, base64 of gzip of
 //   size of the header (32 bit, little endian), JSON header, planes of all arrays.
 
-/** value = low + step q, q in `bytes` bytes; differences to the value `stride` places before, zigzag, byte planes. */
+/** value = low + step q, q in `bytes` bytes; coded against the number `stride` before, in planes. */
 export interface ArrayInfo {
   name: string;
   low: number;

@@ -150,7 +150,7 @@ class Plot {
     this.reading.textContent = this.dot.hidden ? "" : `${short(y)}${units[1]} at ${short(x)}${units[0]}`;
   }
 
-  /** Goes to the snapshot that is nearest on the paper: curves with unloading pass a strain more than once. */
+  /** Goes to the snapshot nearest on the paper: with unloading, a curve passes a strain more than once. */
   private onClick(event: MouseEvent): void {
     const over = this.chart?.over;
     if (!over || !(event.target instanceof Node) || !over.contains(event.target)) return;
