@@ -26,6 +26,7 @@ class Snapshot:
     particles: dict  # position (n, 2) [m], radius (n,) [m], and any field by particle
     contacts: dict = field(default_factory=dict)  # pair (m, 2), force (m,) [N/m], compression positive
     walls: np.ndarray = field(default_factory=lambda: np.empty((0, 4)))  # x0 y0 x1 y1 [m]
+    outlines: dict = field(default_factory=dict)  # position (v, 2) [m], grain (v,): counter-clockwise polygons
 
     @classmethod
     def read(cls, path):
@@ -43,6 +44,7 @@ class Snapshot:
                 particles=_arrays(scene, "particles"),
                 contacts=_arrays(scene, "contacts"),
                 walls=np.asarray(walls, float).reshape(-1, 4),
+                outlines=_arrays(scene, "outlines"),
             )
 
 
