@@ -1,16 +1,10 @@
-#include <unistd.h>
 #include <CLI/CLI.hpp>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "softgrain/core/error.hpp"
-#include "softgrain/core/version.hpp"
+#include "python_program.hpp"
 #include "verbs.hpp"
 
 namespace softgrain {
@@ -23,35 +17,13 @@ struct PlotArguments {
   bool normalise = false;
 };
 
-const char* python() {
-  const char* chosen = std::getenv("SOFTGRAIN_PYTHON");
-  return chosen != nullptr && *chosen != '\0' ? chosen : "/usr/bin/python3";
-}
-
-std::vector<std::string> command_of(const PlotArguments& arguments) {
-  const std::string program = std::string(build_info().share_directory) + "/python/plot.py";
-  std::vector<std::string> words{python(), program, "--format", arguments.format, "--kind", arguments.kind};
+std::vector<std::string> words_of(const PlotArguments& arguments) {
+  std::vector<std::string> words{"--format", arguments.format, "--kind", arguments.kind};
   if (!arguments.output.empty()) words.push_back("--output=" + arguments.output);
   if (arguments.normalise) words.emplace_back("--normalise");
   words.emplace_back("--");
   words.insert(words.end(), arguments.runs.begin(), arguments.runs.end());
   return words;
-}
-
-/// Becomes the Python program, so that its exit code and its signals are ours. Returns only to raise
-/// UsageError.
-void plot(const PlotArguments& arguments) {
-  std::vector<std::string> words = command_of(arguments);
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  std::fflush(nullptr);
-  execvp(argv[0], argv.data());
-  throw UsageError(
-      fmt::format("cannot start {}: {}; `softgrain plot` needs Python: on Debian,\n"
-                  "  apt install python3-matplotlib python3-h5py\n"
-                  "SOFTGRAIN_PYTHON names another interpreter",
-                  argv[0], std::strerror(errno)));
 }
 
 }  // namespace
@@ -75,7 +47,7 @@ void add_plot_verb(CLI::App& app) {
       "  softgrain plot squeeze/case_run                     into squeeze/case_run/figures\n"
       "  softgrain plot slow fast --kind curve --format svg  two runs in one curve\n"
       "\nNeeds Python with Matplotlib and h5py: /usr/bin/python3, or what SOFTGRAIN_PYTHON names.");
-  verb->callback([arguments] { plot(*arguments); });
+  verb->callback([arguments] { become_python("plot.py", words_of(*arguments)); });
 }
 
 }  // namespace softgrain
