@@ -1,0 +1,93 @@
+"""What the compaction of a packing says: stress over strain, coordination over packing fraction. SI units."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import measure
+
+REFERENCE_PACKING_FRACTION = 0.8  # Phi0 of the paper's reference state
+WINDOW = 0.02  # of strain, over which stresses and Z are averaged: walls are hit, not pressed, at 5 m/s
+
+
+@dataclass(frozen=True)
+class Compaction:
+    """Means over WINDOW of strain, sample by sample; Phi is that of undeformed grains, as the paper's 0.7 e^eps."""
+
+    strain: np.ndarray
+    phi: np.ndarray  # Phi_0, undeformed grains
+    phi_deformed: np.ndarray  # true area of the grains
+    stress: np.ndarray  # mean of lid and bottom [Pa]
+    stress_top: np.ndarray
+    stress_bottom: np.ndarray
+    z: np.ndarray
+
+    @property
+    def after_reference(self):
+        """Samples beyond the reference state."""
+        return self.phi >= REFERENCE_PACKING_FRACTION
+
+    @property
+    def reference_stress(self):
+        """sigma0 [Pa], where Phi = 0.8."""
+        return float(np.interp(REFERENCE_PACKING_FRACTION, self.phi, self.stress))
+
+    @property
+    def strain_from_reference(self):
+        """eps' = ln(h0/h), zero where Phi = 0.8."""
+        return self.strain - np.interp(REFERENCE_PACKING_FRACTION, self.phi, self.strain)
+
+
+def compaction(run):
+    """The curves of a compaction. Rows after the last strain reached are left out."""
+    series = run.series
+    strain = series["strain"]
+    _, first = np.unique(np.maximum.accumulate(strain), return_index=True)
+    strain = strain[first]
+
+    def mean(name):
+        return measure.moving_mean(strain, series[name][first], WINDOW)
+
+    top, bottom = mean("stress_top"), mean("stress_bottom")
+    return Compaction(strain, series["phi_0"][first], series["phi"][first], (top + bottom) / 2, top, bottom, mean("z"))
+
+
+@dataclass(frozen=True)
+class PowerLaw:
+    """Z - Z0 = A (Phi - Phi0)^exponent, with the 95 % confidence interval of the fit alone."""
+
+    exponent: float
+    half_width: float
+    z0: float  # Z at the reference state
+    z1: float  # the largest Z
+
+
+def coordination_law(curve, least=0.01):
+    """The free exponent, by least squares of the logarithms beyond Phi0 + least. None with too few samples.
+
+    Neighbouring samples are not independent: the interval takes one independent sample per WINDOW of strain."""
+    z0 = float(np.interp(REFERENCE_PACKING_FRACTION, curve.phi, curve.z))
+    beyond = (curve.phi > REFERENCE_PACKING_FRACTION + least) & (curve.z > z0)
+    if np.count_nonzero(beyond) < 5:
+        return None
+    x = np.log(curve.phi[beyond] - REFERENCE_PACKING_FRACTION)
+    y = np.log(curve.z[beyond] - z0)
+    (slope, intercept), spread = np.polyfit(x, y, 1), x - x.mean()
+    residual = y - slope * x - intercept
+    independent = max(3.0, np.ptp(curve.strain[beyond]) / WINDOW)
+    error = np.sqrt(residual.var() / (independent - 2 + 1e-9) / spread.var())
+    return PowerLaw(float(slope), float(1.96 * error), z0, float(curve.z.max()))
+
+
+def curvature(curve):
+    """How far sigma(eps') at half of the strain lies below the chord, over the chord's rise: 0 linear, > 0 convex."""
+    after = curve.after_reference
+    x, y = curve.strain_from_reference[after], curve.stress[after]
+    middle = np.interp((x[0] + x[-1]) / 2, x, y)
+    return float(((y[0] + y[-1]) / 2 - middle) / (y[-1] - y[0]))
+
+
+def onset(curve, z=3.0):
+    """(eps, Phi) where Z first reaches `z`, or None."""
+    reached = np.flatnonzero(curve.z >= z)
+    return (float(curve.strain[reached[0]]), float(curve.phi[reached[0]])) if reached.size else None
