@@ -1,0 +1,64 @@
+#include <doctest/doctest.h>
+
+#include "reliability/tiny_cases.hpp"
+
+using namespace softgrain::test;
+
+namespace {
+
+/// The same last state, bit for bit, and the same rows but for the wall time.
+bool same_runs(const Workshop& workshop, const std::string& a, const std::string& b) {
+  return workshop.last_hash(a) == workshop.last_hash(b) && workshop.series(a) == workshop.series(b);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "whatever the case, a run cut off at any snapshot and resumed is the run that was not, to the bit") {
+  for (const TinyCase& tiny : tiny_cases()) {
+    const Workshop workshop;
+    CAPTURE(tiny.name);
+    const ProcessResult whole = run_tiny(workshop, tiny, "whole", {"-j", "1"});
+    CAPTURE(whole.err);
+    REQUIRE(whole.exit_code == 0);
+    const std::size_t snapshots = workshop.snapshots("whole").size();
+    REQUIRE(snapshots == 9);  // the first state, six even shares of the run, and the two turns
+    // five and six: one is the state at a turn, the other in the middle of unloading
+    for (std::size_t kept = torture() ? 1 : 5; kept < (torture() ? snapshots : 7); ++kept) {
+      const std::string part = "part" + std::to_string(kept);
+      CAPTURE(part);
+      copy_cut_off(workshop, "whole", part, kept);
+      CHECK(workshop.softgrain({"resume", part, "-q", "-j", "3"}).exit_code == 0);
+      CHECK(same_runs(workshop, part, "whole"));
+    }
+  }
+}
+
+TEST_CASE("a run that stops wherever its time is up and goes on, many times, is the run that did not") {
+  for (const std::string name : {"diametral-bpm", "compaction-mpm"}) {
+    CAPTURE(name);
+    const Workshop workshop;
+    const TinyCase tiny{name, name, tiny_settings(name)};
+    REQUIRE(run_tiny(workshop, tiny, "whole").exit_code == 0);
+    const Words stop{"--stop-after", "0.02 s"};
+    CHECK(run_tiny(workshop, tiny, "parts", stop).exit_code == 75);
+    for (int part = 0; part < repeats(5, 50); ++part)
+      workshop.softgrain({"resume", "parts", "-q", stop[0], stop[1]});
+    CHECK(workshop.softgrain({"resume", "parts", "-q"}).exit_code == 0);
+    CHECK(same_runs(workshop, "parts", "whole"));
+  }
+}
+
+TEST_CASE("the number of threads changes no bit of a result, with friction, in both models") {
+  for (const TinyCase& tiny : tiny_cases()) {
+    if (tiny.source.starts_with('/')) continue;  // an example: its model is among the templates
+    const Workshop workshop;
+    CAPTURE(tiny.name);
+    REQUIRE(run_tiny(workshop, tiny, "one", {"-j", "1"}).exit_code == 0);
+    for (const std::string& threads : torture() ? Words{"2", "3", "4", "8"} : Words{"4"}) {
+      CAPTURE(threads);
+      REQUIRE(run_tiny(workshop, tiny, "on" + threads, {"-j", threads}).exit_code == 0);
+      CHECK(same_runs(workshop, "on" + threads, "one"));
+    }
+  }
+}

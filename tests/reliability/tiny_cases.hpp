@@ -1,0 +1,92 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "support/program_runs.hpp"
+
+namespace softgrain::test {
+
+/// A case that runs in a fraction of a second and unloads on the way.
+struct TinyCase {
+  std::string name;
+  std::string source;  ///< a case file, or the name of a template of `softgrain new`
+  Words settings;
+};
+
+inline Words with_settings(Words words, const Words& settings) {
+  for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
+  return words;
+}
+
+/// What makes an example or a template tiny. Friction is on, which makes the path matter.
+inline Words tiny_settings(const std::string& name) {
+  const bool compaction = name.find("compaction") != std::string::npos;
+  const bool bonded = name.find("bpm") != std::string::npos;
+  Words settings{"output.samples=20", "output.snapshots=6", "output.report=false", "contact.friction=0.3",
+                 "contact.wall_friction=0.2"};
+  const auto add = [&](const Words& more) { settings.insert(settings.end(), more.begin(), more.end()); };
+  if (bonded) add({"bpm.primaries=25", "bpm.library=1"});
+  if (!bonded) add({"mpm.cells=4"});
+  if (compaction) {
+    add({"sample.grains=6", "sample.packing_fraction=0.62", "loading.wall_velocity=\"10 m/s\""});
+    add({"loading.max_strain=0.32", "loading.unload_at=[0.28]", "loading.unload_by=0.08",
+         "loading.max_stress=0"});
+    add(bonded ? Words{"bpm.inner_friction=0.1", "time.step=\"0.2 us\""} : Words{"mpm.time_step=\"4 us\""});
+  } else {
+    add({"loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.1", "loading.unload_at=[0.06]",
+         "loading.unload_by=0.03"});
+    if (!bonded) add({"mpm.time_step=\"20 us\""});
+  }
+  return settings;
+}
+
+/// Every template and every directory of experiments/, and the integrators and formulations besides.
+inline std::vector<TinyCase> tiny_cases() {
+  namespace fs = std::filesystem;
+  std::vector<TinyCase> cases;
+  for (const std::string name : {"diametral-bpm", "diametral-mpm", "compaction-bpm", "compaction-mpm"})
+    cases.push_back({name, name, tiny_settings(name)});
+  for (const auto& entry : fs::directory_iterator(fs::path(SOFTGRAIN_SOURCE_DIR) / "experiments")) {
+    const std::string name = entry.path().filename().string();
+    if (fs::exists(entry.path() / "case.toml"))
+      cases.push_back({name, (entry.path() / "case.toml").string(), tiny_settings(name)});
+  }
+  const auto add_variant = [&](const std::string& name, const std::string& base, const Words& more) {
+    Words settings = tiny_settings(base);
+    settings.insert(settings.end(), more.begin(), more.end());
+    cases.push_back({name, base, settings});
+  };
+  add_variant("explicit-compaction", "compaction-mpm", {"mpm.integrator=\"explicit\"", "mpm.time_step=0"});
+  add_variant("explicit-diametral", "diametral-mpm",
+              {"mpm.integrator=\"explicit\"", "mpm.time_step=0", "grain.radius=\"1 mm\""});
+  add_variant("updated-lagrangian", "diametral-mpm",
+              {"mpm.formulation=\"updated_lagrangian\"", "mpm.time_step=0", "grain.radius=\"1 mm\"",
+               "contact.friction=0", "contact.wall_friction=0"});
+  return cases;
+}
+
+/// The case's file in the workshop.
+inline std::string case_file(const Workshop& workshop, const TinyCase& tiny) {
+  if (std::filesystem::exists(tiny.source)) return tiny.source;
+  workshop.softgrain({"new", tiny.name, "--template", tiny.source});
+  return tiny.name + "/case.toml";
+}
+
+/// Runs the case to its end, silently, into `run`.
+inline ProcessResult run_tiny(const Workshop& workshop, const TinyCase& tiny, const std::string& run,
+                              const Words& options = {}) {
+  Words words = with_settings({"run", case_file(workshop, tiny), "-o", run, "-q"}, tiny.settings);
+  words.insert(words.end(), options.begin(), options.end());
+  return workshop.softgrain(words);
+}
+
+/// Copies a run without the snapshots after its first `kept`, as if it had been cut off there.
+inline void copy_cut_off(const Workshop& workshop, const std::string& from, const std::string& to,
+                         std::size_t kept) {
+  std::filesystem::copy(workshop.path(from), workshop.path(to), std::filesystem::copy_options::recursive);
+  const auto snapshots = workshop.snapshots(to);
+  for (std::size_t k = kept; k < snapshots.size(); ++k) std::filesystem::remove(snapshots[k]);
+}
+
+}  // namespace softgrain::test
