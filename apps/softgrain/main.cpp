@@ -32,6 +32,7 @@ void add_verbs(CLI::App& app) {
   add_new_verb(app);
   add_check_verb(app);
   add_run_verb(app);
+  add_sweep_verb(app);
   add_plot_verb(app);
   add_report_verb(app);
   add_info_verb(app);

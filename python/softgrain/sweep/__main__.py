@@ -1,0 +1,116 @@
+"""python3 -m softgrain.sweep CASE: the runs of a sweep, its table and its figure."""
+
+import argparse
+import os
+import shlex
+import sys
+from pathlib import Path
+
+from .. import NotRecorded
+from . import execute, scripts, table
+from .plan import PlanError, read_plan
+
+USAGE_ERROR, RUNS_FAILED, IO_ERROR = 2, 3, 4  # exit codes, those of the program `softgrain`
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(prog="softgrain sweep", description="Runs a case with some values varied.")
+    parser.add_argument("case", metavar="CASE", type=Path)
+    parser.add_argument("--vary", metavar="KEY=VALUES", action="append", required=True)
+    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], dest="fixed")
+    parser.add_argument("-o", "--output", metavar="DIR", type=Path, required=True)
+    parser.add_argument("-j", "--jobs", type=int, default=len(os.sched_getaffinity(0)), help="runs at a time")
+    parser.add_argument("--column", action="append", default=[], help="of series.csv: into the table and the figure")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--list", action="store_true", help="number the runs, run nothing")
+    what.add_argument("--index", type=int, help="carry out one run of the list")
+    what.add_argument("--slurm", action="store_true", help="write DIR/array.sh for sbatch, run nothing")
+    what.add_argument("--snakemake", action="store_true", help="write DIR/Snakefile, run nothing")
+    return parser.parse_args(arguments)
+
+
+def list_runs(plan):
+    for number, run in enumerate(plan.runs):
+        state = execute.state(plan.directory(run)) or "to do"
+        print(f"{number}\t{state}\t{shlex.join(plan.run_command(run))}")
+
+
+def become_run(plan, index):
+    """Becomes the run, so that its signals and its exit code are ours."""
+    runs = plan.runs
+    if not 0 <= index < len(runs):
+        raise PlanError(f"--index {index}: the runs are numbered from 0 to {len(runs) - 1}")
+    if not execute.select_undone(plan, [runs[index]], 1):
+        print(f"{runs[index].name}: done before", file=sys.stderr)
+        return 0
+    plan.directory(runs[index]).parent.mkdir(parents=True, exist_ok=True)
+    words = plan.run_command(runs[index], "--progress=plain")
+    os.execvp(words[0], words)
+
+
+def write_script(plan, name, text_of, columns):
+    plan.folder.mkdir(parents=True, exist_ok=True)
+    path = plan.folder / name
+    path.write_text(text_of(plan, scripts.sweep_words(plan, columns), path))
+    print(path)
+    return 0
+
+
+def sweep(plan, jobs, columns):
+    """All runs, then the table and the figure."""
+    waiting = execute.select_undone(plan, plan.runs, jobs)
+    if len(waiting) < len(plan.runs):
+        print(f"{len(plan.runs) - len(waiting)} of {len(plan.runs)} runs: done before", file=sys.stderr)
+    (plan.folder / "runs").mkdir(parents=True, exist_ok=True)
+    pool = execute.Pool(plan, jobs)
+    failed = pool.carry_out(waiting)
+    collect(plan, columns)
+    if failed:
+        print(f"error: {len(failed)} of {len(plan.runs)} runs failed: {', '.join(failed)}", file=sys.stderr)
+    return pool.stop_code or (RUNS_FAILED if failed else 0)
+
+
+def collect(plan, columns):
+    opened = table.read_runs(plan)
+    results = plan.folder / "results.csv"
+    table.write_results(plan, opened, columns, results)
+    print(results)
+    try:
+        from .. import plot
+        from .figure import draw_sweep
+
+        with plot.style():
+            path = plan.folder / "sweep.png"
+            plot.save(draw_sweep(plan, opened, columns), path, list(opened.values()))
+        print(path)
+    except (NotRecorded, ImportError) as missing:
+        print(f"softgrain sweep: no figure: {missing}", file=sys.stderr)
+
+
+def main(arguments=None):
+    options = parse(arguments)
+    program = os.environ.get("SOFTGRAIN_PROGRAM", "softgrain")
+    try:
+        plan = read_plan(program, options.case, options.fixed, options.vary, options.output)
+        if options.list:
+            return list_runs(plan)
+        if options.index is not None:
+            return become_run(plan, options.index)
+        if options.slurm:
+            return write_script(plan, "array.sh", scripts.slurm_script, options.column)
+        if options.snakemake:
+            return write_script(plan, "Snakefile", scripts.snakefile, options.column)
+        return sweep(plan, max(1, options.jobs), options.column)
+    except execute.RefusedCase as error:
+        print(f"error: {error}", file=sys.stderr)
+        return error.code
+    except ValueError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return USAGE_ERROR
+    except OSError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return IO_ERROR
+
+
+if __name__ == "__main__":
+    sys.exit(main())
