@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <csignal>
+#include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -33,6 +36,7 @@ void add_verbs(CLI::App& app) {
   add_check_verb(app);
   add_run_verb(app);
   add_sweep_verb(app);
+  add_reproduce_verb(app);
   add_plot_verb(app);
   add_report_verb(app);
   add_info_verb(app);
@@ -79,7 +83,11 @@ std::string explain(CLI::App& app, const CLI::ParseError& error) {
 }
 
 int refuse_command_line(CLI::App& app, const CLI::ParseError& error) {
-  if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version: stdout, exit code 0
+  if (error.get_exit_code() == 0) {  // --help, --version: stdout, exit code 0
+    app.exit(error);
+    check_stdout();
+    return success;
+  }
   const CLI::App& verb = chosen_verb(app);
   const std::string name = &verb == &app ? "softgrain" : "softgrain " + verb.get_name();
   print_error(fmt::format("error: {}\ntry '{} --help'", explain(app, error), name));
@@ -95,14 +103,15 @@ int run_program(int argc, char** argv) {
       "Examples:\n"
       "  softgrain new squeeze                  writes squeeze/case.toml, commented\n"
       "  softgrain check squeeze/case.toml      what it would do and what it would cost\n"
-      "\nExit codes: 0 done, 1 our bug, 2 usage or invalid case, 3 numerical failure, 4 input/output.");
+      "\nExit codes: 0 done, 1 our bug, 2 usage or invalid case, 3 numerical failure, 4 input/output,\nor "
+      "memory.");
   add_verbs(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return refuse_command_line(app, error);
   }
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw IoError("cannot write to stdout");
+  check_stdout();
   return success;
 }
 
@@ -111,6 +120,7 @@ int run_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace softgrain;
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of the write, not the end
   try {
     return run_program(argc, argv);
   } catch (const ExitCode& exit) {
@@ -129,6 +139,9 @@ int main(int argc, char** argv) {
     return input_output;
   } catch (const std::system_error& error) {  // the file system's, and fmt's when stdout is full
     print_error(fmt::format("error: {}", error.what()));
+    return input_output;
+  } catch (const std::bad_alloc&) {
+    std::fputs("error: out of memory; `softgrain check CASE` tells what a run needs\n", stderr);
     return input_output;
   } catch (const std::exception& error) {
     print_error(fmt::format("error: {}\nthis is a bug, please report", error.what()));

@@ -30,6 +30,7 @@ void add_schema_verb(CLI::App& app);
 void add_doctor_verb(CLI::App& app);
 void add_run_verb(CLI::App& app);  // run and resume
 void add_sweep_verb(CLI::App& app);
+void add_reproduce_verb(CLI::App& app);
 void add_plot_verb(CLI::App& app);
 void add_report_verb(CLI::App& app);
 void add_info_verb(CLI::App& app);

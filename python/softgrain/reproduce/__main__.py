@@ -21,7 +21,7 @@ def parse(arguments):
                         help="quick: small, three seeds, a minute; paper: its full size, half an hour")
     parser.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="where all of it goes")
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count() or 1, help="runs at a time")
-    parser.add_argument("--program", default="softgrain", help=argparse.SUPPRESS)
+    parser.add_argument("--program", default=os.environ.get("SOFTGRAIN_PROGRAM", "softgrain"), help=argparse.SUPPRESS)
     return parser.parse_args(arguments)
 
 

@@ -30,13 +30,13 @@ def reduced_force(run):
     return strain, force / (modulus * radius)
 
 
-def secant_growth(strain, stress):
-    """Mean slope beyond eps = 0.2 over that between 0.02 and 0.1: below 1, "a lower slope"."""
+def slope_ratio(strain, stress):
+    """Mean slope of sigma(eps) beyond eps = 0.25 over that between 0.1 and 0.2: below 1, "a lower slope"."""
     def slope(low, high):
         part = (strain >= low) & (strain <= high)
         return np.polyfit(strain[part], stress[part], 1)[0]
 
-    return float(slope(0.2, strain.max()) / slope(0.02, 0.1))
+    return float(slope(0.25, strain.max()) / slope(0.1, 0.2))
 
 
 def linear_strain(strain, stress, drop=0.1):
