@@ -71,7 +71,8 @@ def summary(rows, info):
     work = last["wall_work"]
     steps = [r["step"] - q["step"] for q, r in zip(rows, body)]
     mean = lambda key: sum(r[key] * n for r, n in zip(body, steps)) / sum(steps)
-    return {"state": info["state"], "steps": int(last["step"]), "strain_end": last["strain"], "phi_end": last["phi"], "stress_end_MPa": (last["stress_bottom"] + last["stress_top"]) / 2e6,
+    return {"state": info["state"], "steps": int(last["step"]), "strain_end": last["strain"],
+            "phi_end": last["phi"], "stress_end_MPa": (last["stress_bottom"] + last["stress_top"]) / 2e6,
             "z_end": last["z"], "least_J": last["least_J"], "iterations": mean("iterations"), "sweeps_per_step": mean("sweeps"),
             "rejected_steps": int(last["rejected_steps"]), "penetration_over_R": max(r["overlap_max"] for r in body),
             "energy_error_over_work": last.get("energy_error", math.nan) / work,
