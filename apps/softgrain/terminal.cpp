@@ -1,6 +1,5 @@
 #include "terminal.hpp"
 
-#include <fmt/core.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -27,12 +26,17 @@ void print_error(std::string_view message) {
   }
   if (text.empty() || text.back() != '\n') text += '\n';
   std::fflush(stdout);
-  fmt::print(stderr, "{}", text);
+  std::fputs(text.c_str(),
+             stderr);  // fmt::print would raise when stderr is full, and nobody is left to catch
 }
 
 void print_result(std::string_view text) {
-  const bool all = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  if (!all || std::fflush(stdout) != 0) throw IoError("cannot write to stdout");
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  check_stdout();
+}
+
+void check_stdout() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw IoError("cannot write to stdout");
 }
 
 }  // namespace softgrain

@@ -15,4 +15,7 @@ void print_error(std::string_view message);
 /// Prints a result to stdout, at once. Raises IoError when it cannot be written.
 void print_result(std::string_view text);
 
+/// Raises IoError when something of what was printed to stdout could not be written.
+void check_stdout();
+
 }  // namespace softgrain
