@@ -58,16 +58,20 @@ struct CurvePoint {
   Vec<2> place, tangent, second;
 };
 
-/// Where a curve is closest to x near xi, by Newton's method on (x - c) . c' = 0; may leave [0, 1].
-double closest_share(std::span<const Vec<2>> position, const std::array<int, 4>& vertices, const Vec<2>& x,
-                     double xi) {
-  for (int pass = 0; pass < 8; ++pass) {
+/// Where in [0, 1] a span is closest to x: the root of (x - c) . c', by Newton's method inside a bracket.
+double closest_share(std::span<const Vec<2>> position, const std::array<int, 4>& vertices, const Vec<2>& x) {
+  const Vec<2> chord = position[vertices[2]] - position[vertices[1]];
+  double low = 0, high = 1;
+  double xi = std::clamp(dot(x - position[vertices[1]], chord) / dot(chord, chord), 0.0, 1.0);
+  for (int pass = 0; pass < 50; ++pass) {
     const CurvePoint c(position, vertices, xi);
     const Vec<2> d = x - c.place;
-    const double square = dot(c.tangent, c.tangent);
-    const double step = dot(d, c.tangent) / std::max(square - dot(d, c.second), square / 2);
-    xi = std::clamp(xi + step, -0.5, 1.5);
-    if (std::abs(step) < 1e-13) break;
+    const double descent = dot(d, c.tangent), slope = dot(c.tangent, c.tangent) - dot(d, c.second);
+    (descent > 0 ? low : high) = xi;
+    const double newton = xi + descent / slope;
+    const double next = slope > 0 && newton >= low && newton <= high ? newton : (low + high) / 2;
+    if (std::abs(next - xi) < 1e-13) return next;
+    xi = next;
   }
   return xi;
 }
@@ -76,12 +80,10 @@ double closest_share(std::span<const Vec<2>> position, const std::array<int, 4>&
 OutlineContact facing_curve(const SoftGrains& grains, const OutlineState& state, int slave, int nearest) {
   const Vec<2>& x = state.position[slave];
   OutlineContact contact{.vertex = slave, .master = span_from(grains, nearest)};
-  contact.share = closest_share(state.position, contact.master, x, 0);
-  if (contact.share < 0) {
+  const CurvePoint vertex(state.position, contact.master, 0);
+  if (dot(x - vertex.place, vertex.tangent) < 0)
     contact.master = span_from(grains, previous_vertex(grains, nearest));
-    contact.share = closest_share(state.position, contact.master, x, 1);
-  }
-  contact.share = std::clamp(contact.share, 0.0, 1.0);
+  contact.share = closest_share(state.position, contact.master, x);
   const CurvePoint c(state.position, contact.master, contact.share);
   contact.normal =
       (-1 / norm(c.tangent)) * perpendicular(c.tangent);  // outward of a counter-clockwise outline
@@ -207,8 +209,7 @@ Vec<2> relative_displacement(const OutlineContact& contact, const OutlineState& 
 double gap_now(const OutlineContact& contact, const OutlineState& state) {
   const Vec<2>& x = state.position[contact.vertex];
   if (contact.wall >= 0) return dot(x - state.walls[contact.wall].point, contact.normal);
-  const CurvePoint c(state.position, contact.master,
-                     closest_share(state.position, contact.master, x, contact.share));
+  const CurvePoint c(state.position, contact.master, closest_share(state.position, contact.master, x));
   return -dot(x - c.place, perpendicular(c.tangent)) / norm(c.tangent);
 }
 
