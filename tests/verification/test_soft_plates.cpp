@@ -77,6 +77,27 @@ TEST_CASE("small-strain Hooke softens where Hencky stiffens") {
   check_forces({.law = "hencky"}, approach, {.0797, .2208, .4454}, 0.03);
 }
 
+TEST_CASE("a Hookean grain widens as a disk between two forces: dL = F/E* (4/pi - 1 + nu/(1 - nu))") {
+  constexpr double nu = 0.45, dt = 5e-5, speed = 0.2;
+  const auto shape = test::disk(16);
+  const auto extent = [&](const SoftGrains& grains, int axis) {
+    std::vector<Vec<2>> x;
+    grains.gather_outline(x);
+    const auto [low, high] = std::ranges::minmax(x, {}, [axis](const Vec<2>& v) { return v[axis]; });
+    return high[axis] - low[axis];
+  };
+  const SoftGrains grains({test::placed(shape, R, {0, 0})}, make_law("small_strain_hooke", E, nu), 990,
+                          false);
+  const double width = extent(grains, 0), reach = extent(grains, 1) / 2;
+  ImplicitDynamics dynamics(
+      grains, {test::floor_at(-reach), {.point = {0, reach}, .normal = {0, -1}, .velocity = {0, -speed}}},
+      {});
+  for (int step = 0; step < std::lround(2 * 0.08 * R / (speed * dt)); ++step) dynamics.step(dt);
+  const double force = (dynamics.wall_impulse(1)[1] - dynamics.wall_impulse(0)[1]) / (2 * dt);
+  const double expected = force * (1 - nu * nu) / E * (4 / std::numbers::pi - 1 + nu / (1 - nu));
+  CHECK(extent(dynamics.grains, 0) - width == doctest::Approx(expected).epsilon(0.02));
+}
+
 TEST_CASE("a nearly incompressible grain does not lock with mean dilatation, and does without") {
   check_forces({.nu = 0.499, .mean_dilatation = true}, {0.1}, {.0799}, 0.02);
   CHECK(force_at({.nu = 0.499}, {0.1})[0] > 1.1 * .0799);
