@@ -46,6 +46,6 @@ def _values(planned, run):
 def _ends(run, columns):
     cells = []
     for name in columns:
-        series = run.series.get(name, np.empty(0)) if run else np.empty(0)
+        series = run.series.get(name, np.empty(0)) if run is not None else np.empty(0)
         cells += [f"{series[-1]:.9g}", f"{np.nanmax(series):.9g}"] if series.size else ["", ""]
     return cells

@@ -1,0 +1,244 @@
+"""Sweeps, with a stand-in for softgrain that writes a row whose numbers follow from its values."""
+
+import contextlib
+import csv
+import io
+import json
+import os
+import signal
+import stat
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+from softgrain.sweep import PlanError, __main__, read_plan
+from softgrain.sweep.figure import mean_curve
+
+PROGRAM = Path(__file__).resolve().parents[1] / "sweep.py"
+
+# Its stress is 100 friction + seed; friction = 7 fails; friction = 9 waits for a signal.
+STAND_IN = f"""#!{sys.executable}
+import json, pathlib, signal, sys, time
+verb, words = sys.argv[1], sys.argv[2:]
+sets = dict(w[6:].split("=") for w in words if w.startswith("--set="))
+friction, seed = float(sets.get("contact.friction", 0)), int(sets.get("sample.seed", 1))
+if friction < 0:
+    sys.exit("error: contact.friction = -1 is out of range") if verb == "run" else (
+        print("contact.friction is out of range", file=sys.stderr), sys.exit(2))
+if verb == "check":
+    print(json.dumps({{"case": {{"contact": {{"friction": friction}}, "sample": {{"seed": seed}}}}}}))
+    sys.exit()
+folder = pathlib.Path(words[words.index("-o") + 1])
+folder.mkdir(parents=True, exist_ok=True)
+with (folder / "calls").open("a") as calls:
+    calls.write(" ".join(words) + "\\n")
+(folder / "case.toml").write_text(f"[contact]\\nfriction = {{friction}}\\n[sample]\\nseed = {{seed}}\\n")
+if friction == 7:
+    sys.exit((print("the grain has burst", file=sys.stderr), 3)[1])
+if friction == 9:
+    stopped = []
+    signal.signal(signal.SIGTERM, lambda *_: stopped.append(1))
+    (folder / "run.json").write_text('{{"state": "running"}}')
+    while not stopped:
+        time.sleep(0.01)
+    sys.exit(75)
+stress = 100 * friction + seed
+rows = [f"{{e}},{{s}}" for e, s in ((0, 0), (0.5, 3 * stress), (1, stress))]
+(folder / "series.csv").write_text("\\n".join(["strain,stress_top[Pa]", *rows, ""]))
+(folder / "run.json").write_text('{{"state": "done"}}')
+"""
+
+
+class Plans(unittest.TestCase):
+    def plan(self, *varied):
+        return read_plan("softgrain", "case.toml", ["solver.max_sweeps=9"], varied, "out")
+
+    def test_every_combination_is_a_run_named_by_its_values(self):
+        plan = self.plan("contact.friction=0,0.5", "sample.seed=1..3")
+        self.assertEqual([run.name for run in plan.runs],
+                         [f"friction_{mu}-seed_{seed}" for mu in ("0", "0.5") for seed in (1, 2, 3)])
+        self.assertEqual(plan.run_command(plan.runs[4]),
+                         ["softgrain", "run", "case.toml", "--set=solver.max_sweeps=9", "--set=contact.friction=0.5",
+                          "--set=sample.seed=2", "-o", "out/runs/friction_0.5-seed_2", "--resume"])
+
+    def test_quantities_and_lists_are_values_and_make_names_that_files_can_have(self):
+        plan = self.plan("time.step=0.05 us,1e-7", "loading.unload_at=[0.1,0.2],[]")
+        self.assertEqual(plan.varied["time.step"], ["0.05 us", "1e-7"])
+        self.assertEqual(plan.varied["loading.unload_at"], ["[0.1,0.2]", "[]"])
+        self.assertEqual(plan.runs[0].name, "step_0.05us-unload_at__0.1_0.2_")
+
+    def test_keys_of_one_ending_are_named_in_full(self):
+        self.assertEqual(self.plan("solver.tolerance=1", "mpm.tolerance=2").runs[0].name,
+                         "solver.tolerance_1-mpm.tolerance_2")
+
+    def test_what_makes_no_plan_is_refused(self):
+        for wrong in (["friction"], ["a.b="], ["a.b=1,,2"], ["a.b=3..1"], ["a.b=1", "a.b=2"], ["a.b=1,1"],
+                      ["a.b=1..10000000"]):
+            with self.subTest(wrong), self.assertRaises(PlanError):
+                self.plan(*wrong)
+
+
+class Temporary(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+        self.program = self.folder / "softgrain"
+        self.program.write_text(STAND_IN)
+        self.program.chmod(stat.S_IRWXU)
+        self.out = self.folder / "out"
+
+    def words(self, *arguments, frictions="0,0.5", seeds="1..3"):
+        return [str(self.folder / "case.toml"), "-o", str(self.out), f"--vary=contact.friction={frictions}",
+                f"--vary=sample.seed={seeds}", *arguments]
+
+    def sweep(self, *arguments, **values):
+        """(exit code, stdout, stderr) of a sweep."""
+        out, err = io.StringIO(), io.StringIO()
+        os.environ["SOFTGRAIN_PROGRAM"] = str(self.program)
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            code = __main__.main(self.words(*arguments, **values))
+        return code or 0, out.getvalue(), err.getvalue()
+
+    def start(self, *arguments, **values):
+        """The same as a process of its own."""
+        environment = {**os.environ, "SOFTGRAIN_PROGRAM": str(self.program)}
+        return subprocess.Popen([sys.executable, PROGRAM, *self.words(*arguments, **values)], env=environment,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def results(self):
+        with (self.out / "results.csv").open() as file:
+            return list(csv.DictReader(file))
+
+    def calls(self, name):
+        path = self.out / "runs" / name / "calls"
+        return len(path.read_text().splitlines()) if path.exists() else 0
+
+
+class Sweeps(Temporary):
+    def test_the_table_has_last_values_and_maxima_of_each_run(self):
+        code, out, _ = self.sweep("--jobs=2")
+        self.assertEqual((code, out.split()), (0, [f"{self.out}/results.csv", f"{self.out}/sweep.png"]))
+        rows = self.results()
+        self.assertEqual(len(rows), 6)
+        for row in rows:
+            stress = 100 * float(row["contact.friction"]) + int(row["sample.seed"])
+            self.assertEqual(row["state"], "done")
+            self.assertEqual(float(row["stress_top_last[Pa]"]), stress)
+            self.assertEqual(float(row["stress_top_max[Pa]"]), 3 * stress)
+
+    def test_what_is_done_is_not_done_again_and_new_values_are_added(self):
+        self.sweep(seeds="1..2")
+        code, _, err = self.sweep(seeds="1..3")
+        self.assertEqual(code, 0)
+        self.assertIn("4 of 6 runs: done before", err)
+        self.assertEqual([self.calls(f"friction_0-seed_{seed}") for seed in (1, 2, 3)], [1, 1, 1])
+
+    def test_a_failed_run_stops_no_other_and_is_named(self):
+        code, _, err = self.sweep("--jobs=1", frictions="7,0", seeds="1")
+        self.assertEqual(code, 3)
+        self.assertIn("friction_7-seed_1: failed (3): the grain has burst", err)
+        self.assertIn("1 of 2 runs failed: friction_7-seed_1", err)
+        self.assertEqual([row["state"] for row in self.results()], ["to do", "done"])
+
+    def test_a_wrong_value_is_refused_before_the_first_run(self):
+        code, _, err = self.sweep(frictions="0,-1")
+        self.assertEqual(code, 2)
+        self.assertIn("out of range", err)
+        self.assertFalse(self.out.exists())
+
+    def test_a_directory_with_runs_of_another_case_is_refused(self):
+        self.sweep(frictions="0", seeds="1")
+        (self.out / "runs/friction_0-seed_1/case.toml").write_text("[contact]\nfriction = 0.25\n")
+        code, _, err = self.sweep(frictions="0", seeds="1")
+        self.assertEqual(code, 2)
+        self.assertIn("of another case", err)
+
+    def test_the_list_numbers_the_runs_and_an_index_makes_one_of_them(self):
+        code, out, _ = self.sweep("--list")
+        lines = [line.split("\t") for line in out.splitlines()]
+        self.assertEqual((code, len(lines), lines[4][:2]), (0, 6, ["4", "to do"]))
+        self.assertFalse(self.out.exists())
+        process = self.start("--index=4")
+        self.assertEqual((process.wait(), process.communicate()[0]), (0, ""))
+        self.assertEqual([path.name for path in (self.out / "runs").iterdir()], ["friction_0.5-seed_2"])
+        self.assertEqual(self.sweep("--index=6")[0], 2)
+
+    def test_a_signal_stops_the_runs_and_the_sweep_asks_to_come_again(self):
+        process = self.start("--jobs=1", frictions="9,0", seeds="1")
+        waiting = self.out / "runs/friction_9-seed_1/run.json"
+        for _ in range(1000):
+            if waiting.exists():
+                break
+            time.sleep(0.01)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 75)
+        self.assertEqual(self.calls("friction_0-seed_1"), 0)  # no other run began
+
+    def test_without_matplotlib_there_is_the_table_and_no_figure(self):
+        stub = self.folder / "matplotlib.py"
+        stub.write_text("raise ImportError('No module named matplotlib')")
+        environment = {**os.environ, "SOFTGRAIN_PROGRAM": str(self.program), "PYTHONPATH": str(self.folder)}
+        result = subprocess.run([sys.executable, PROGRAM, *self.words()], env=environment, capture_output=True,
+                                text=True)
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("no figure: No module named matplotlib", result.stderr)
+        self.assertEqual(len(self.results()), 6)
+
+    def test_mean_and_spread_are_taken_over_the_seeds(self):
+        self.sweep(frictions="0", seeds="1,3")
+        plan = read_plan("", "", [], ["contact.friction=0", "sample.seed=1,3"], self.out)
+        from softgrain.sweep.table import read_runs
+        strain, mean, spread = mean_curve(list(read_runs(plan).values()), "stress_top")
+        half = np.searchsorted(strain, 0.25)
+        self.assertAlmostEqual(mean[half] / strain[half], 2 * 6, places=9)  # 3 * seed at strain 0.5, linear
+        self.assertAlmostEqual(spread[half] / mean[half], 0.5, places=9)
+
+
+class Scripts(Temporary):
+    def stub(self, name, text):
+        path = self.folder / "bin" / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("#!/bin/bash\n" + text)
+        path.chmod(stat.S_IRWXU)
+
+    def submit(self, index):
+        """The array's script with stand-ins for srun, softgrain and scontrol, as Slurm would start it."""
+        environment = {"PATH": f"{self.folder}/bin:/usr/bin:/bin", "SLURM_ARRAY_TASK_ID": str(index),
+                       "SLURM_JOB_ID": "41"}
+        return subprocess.run(["/bin/bash", self.out / "array.sh"], env=environment, capture_output=True, text=True)
+
+    def test_the_array_makes_each_run_once_and_requeues_the_one_that_asks_for_it(self):
+        self.assertEqual(self.sweep("--slurm", "--set=loading.wall_velocity=1 m/s")[0], 0)
+        text = (self.out / "array.sh").read_text()
+        self.assertIn("#SBATCH --array=0-5\n", text)
+        self.assertIn("#SBATCH --signal=USR2@", text)
+        self.stub("srun", 'printf "%s\\n" "$@"; exit $((SLURM_ARRAY_TASK_ID == 5 ? 75 : 0))')
+        self.stub("scontrol", 'echo "scontrol $*"')
+        done = self.submit(2)
+        self.assertEqual(done.returncode, 0)
+        self.assertEqual(done.stdout.splitlines()[-2:], ["--index", "2"])
+        self.assertIn("--set=loading.wall_velocity=1 m/s\n", done.stdout)
+        again = self.submit(5)
+        self.assertEqual(again.returncode, 75)
+        self.assertIn("scontrol requeue 41", again.stdout)
+
+    def test_the_snakefile_is_python_but_for_its_rules_and_names_every_run(self):
+        self.assertEqual(self.sweep("--snakemake")[0], 0)
+        text = (self.out / "Snakefile").read_text()
+        names = {}
+        exec(text.partition("rule all")[0], names)
+        self.assertEqual(len(names["RUNS"]), 6)
+        self.assertEqual(names["FOLDER"], self.out.resolve())
+        self.assertIn(f"{self.program} sweep ", names["COMMAND"])
+        self.assertEqual(text.count("\nrule "), 3)
+
+
+if __name__ == "__main__":
+    unittest.main()
