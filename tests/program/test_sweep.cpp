@@ -56,7 +56,7 @@ TEST_CASE("a sweep makes each run as `softgrain run` would and sums them up in a
   CHECK(table[2] == "seed_2,done,2," + step + "," + step);
 }
 
-TEST_CASE("a run that cannot be made stops no other run of the sweep; exit code 3 names it") {
+TEST_CASE("a run that cannot be made stops no other run of the sweep, and exit code 3 names it") {
   const TemporaryDirectory folder;
   fs::create_directories(folder.path() / "out/runs/seed_1");
   std::ofstream(folder.path() / "out/runs/seed_1/thesis.txt") << "not to be overwritten";
@@ -67,7 +67,7 @@ TEST_CASE("a run that cannot be made stops no other run of the sweep; exit code 
   CHECK(read_text(folder.path() / "out/runs/seed_1/thesis.txt") == "not to be overwritten");
 }
 
-TEST_CASE("a sweep called again does nothing twice; one of its runs can be made by its number") {
+TEST_CASE("a sweep called again does nothing twice, and one of its runs can be made by its number") {
   const TemporaryDirectory folder;
   REQUIRE(sweep(folder, {"--index", "1"}).exit_code == 0);
   CHECK(fs::exists(folder.path() / "out/runs/seed_2/series.csv"));
