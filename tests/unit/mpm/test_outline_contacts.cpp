@@ -100,6 +100,25 @@ TEST_CASE("every vertex of both outlines faces the closest point of the other's 
   CHECK(std::ranges::count_if(contacts, [](const OutlineContact& c) { return c.gap < 0; }) >= 1);
 }
 
+TEST_CASE("on outlines with short and long segments and sharp bends, too, vertices face the closest point") {
+  int met = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    SoftGrains grains({test::placed(test::disk(4), 1, {0, 0}), test::placed(test::disk(4), 1, {2, 0.1})},
+                      make_law("neo_hookean", 1, 0.3), 1, false);
+    test::shake(grains, 0.15, seed);  // a segment is 0.4 long
+    const OutlineState state = state_of(grains);
+    for (const OutlineContact& c : OutlineNeighbours().detect(grains, state)) {
+      if (std::abs(c.gap) > 0.1)
+        continue;  // further away the closest vertex need not be near the closest point
+      const Facing facing =
+          brute_force(grains, state, 1 - grains.grain_of_vertex(c.vertex), state.position[c.vertex]);
+      CHECK(std::abs(c.gap) < facing.distance + 2e-3);
+      ++met;
+    }
+  }
+  CHECK(met > 50);
+}
+
 TEST_CASE("a grain that rolls round another finds the same contacts as a search from the beginning") {
   const std::vector<GrainPlacement> placed{test::placed(test::disk(3), 1, {0, 0}),
                                            test::placed(test::disk(5), 1, {1.99, 0})};
