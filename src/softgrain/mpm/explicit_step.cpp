@@ -7,6 +7,7 @@
 
 #include "softgrain/contact/nlgs.hpp"
 #include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/mpm/equilibrium.hpp"
 #include "softgrain/mpm/lumped_contacts.hpp"
 
@@ -75,16 +76,13 @@ SoftStepReport ExplicitDynamics::step(double dt) {
 
 /// v_free = v + dt M^-1 (f_ext - f_int)
 void ExplicitDynamics::kick(double dt) {
-  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+  std::vector<unsigned> inverted(grains.batches.size());
+  parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
     GrainBatch& batch = grains.batches[b];
     if (options.damping_time > 0)
       for (std::size_t i = 0; i < batch.position.size(); ++i)
         batch.position[i] += Wide(options.damping_time) * batch.velocity[i];
-    const unsigned inverted = internal_force(grains, batch, force_[b]);
-    for (int lane = 0; lane < Wide::size; ++lane)
-      if ((inverted >> lane & 1u) != 0 && batch.grain[lane] >= 0)
-        throw NumericalError(fmt::format(
-            "a material point of grain {} is turned inside out; use a smaller time step", batch.grain[lane]));
+    inverted[b] = internal_force(grains, batch, force_[b]);
     velocity_start_[b] = batch.velocity;
     const Wide scale = Wide(dt) / (grains.density * (batch.radius * batch.radius));
     for (std::size_t i = 0; i < batch.position.size(); ++i) {
@@ -92,25 +90,32 @@ void ExplicitDynamics::kick(double dt) {
       const Wide rate = scale * Wide(1 / batch.topology->node_volume[i]);
       for (int d = 0; d < 2; ++d) batch.velocity[i][d] += dt * options.gravity[d] - rate * force_[b][i][d];
     }
-  }
+  });
+  for (std::size_t b = 0; b < inverted.size(); ++b)
+    for (int lane = 0; lane < Wide::size; ++lane)
+      if (const int grain = grains.batches[b].grain[lane]; (inverted[b] >> lane & 1u) != 0 && grain >= 0)
+        throw NumericalError(
+            fmt::format("a material point of grain {} is turned inside out; use a smaller time step", grain));
 }
 
 /// x+ = x + dt v+, and the work over the step, in which M (v+ - v) does (v+ + v)/2 . M (v+ - v) = dK.
 void ExplicitDynamics::drift(double dt) {
-  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+  std::vector<Wide> internal(grains.batches.size(), 0.0), gravity(grains.batches.size(), 0.0);
+  parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
     GrainBatch& batch = grains.batches[b];
-    Wide internal = 0.0, gravity = 0.0;
     for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
       batch.position[i] += Wide(dt) * batch.velocity[i];
       const Vec<2, Wide> moved = Wide(dt / 2) * (batch.velocity[i] + velocity_start_[b][i]);
-      internal += dot(force_[b][i], moved);
-      gravity += grains.node_mass(batch, i) * (options.gravity[0] * moved[0] + options.gravity[1] * moved[1]);
+      internal[b] += dot(force_[b][i], moved);
+      gravity[b] +=
+          grains.node_mass(batch, i) * (options.gravity[0] * moved[0] + options.gravity[1] * moved[1]);
     }
-    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) {
-      work.internal += internal[lane];
-      work.gravity += gravity[lane];
+  });
+  for (std::size_t b = 0; b < internal.size(); ++b)
+    for (int lane = 0; lane < Wide::size && grains.batches[b].grain[lane] >= 0; ++lane) {
+      work.internal += internal[b][lane];
+      work.gravity += gravity[b][lane];
     }
-  }
 }
 
 void ExplicitDynamics::add_contact_work(double dt) {

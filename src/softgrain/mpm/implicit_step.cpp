@@ -6,6 +6,7 @@
 
 #include "softgrain/contact/nlgs.hpp"
 #include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/mpm/equilibrium.hpp"
 
 namespace softgrain {
@@ -50,6 +51,7 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
   }
   half_solved_.resize(grains.batches.size());
   force_.resize(grains.batches.size());
+  kept_.resize(grains.batches.size());
   wall_impulse_.resize(walls.size());
 }
 
@@ -132,7 +134,9 @@ ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, S
       pressure[v] = (proximal * norm(force[v]) / length) * Vec<2>{1, 1};
     }
   }
-  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+  report.factorisations += batches();
+  std::vector<int> failed(batches(), -1);
+  parallel_for(batches(), [&](int b) {
     const GrainBatch& batch = grains.batches[b];
     BatchedCholesky& A = matrix_[b];
     A.clear();
@@ -143,22 +147,20 @@ ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, S
       const Wide entry = grains.node_mass(batch, i) * Wide(1 / (dt * dt)) + diagonal[i][0];
       A.add(i, i, {entry, 0.0, 0.0, entry});
     }
-    ++report.factorisations;
-    if (const unsigned failed = A.factor(); (failed_grain_ = grain_in(batch, failed)) >= 0)
-      return Failure::indefinite_matrix;
-    A.kept_inverse(compliance_[b]);
-  }
-  return Failure::none;
+    failed[b] = grain_in(batch, A.factor());
+    if (failed[b] < 0) A.kept_inverse(compliance_[b]);
+  });
+  return none_failed(failed) ? Failure::none : Failure::indefinite_matrix;
 }
 
 /// r = f_ext - f_int - M (x - x_n - dt v_n)/dt^2, and A^-1 r on the outlines.
 ImplicitDynamics::Failure ImplicitDynamics::residual(double dt) {
   outline_increment_.assign(grains.outline_size(), {});
-  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+  std::vector<int> failed(batches(), -1);
+  parallel_for(batches(), [&](int b) {
     const GrainBatch& batch = grains.batches[b];
-    if (const unsigned inverted = internal_force(grains, batch, force_[b]);
-        (failed_grain_ = grain_in(batch, inverted)) >= 0)
-      return Failure::inverted_point;
+    failed[b] = grain_in(batch, internal_force(grains, batch, force_[b]));
+    if (failed[b] >= 0) return;
     WideVectors& r = force_[b];
     for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
       const Wide m = grains.node_mass(batch, i), rate = m * Wide(1 / (dt * dt));
@@ -168,16 +170,23 @@ ImplicitDynamics::Failure ImplicitDynamics::residual(double dt) {
         r[i][d] = m * Wide(options.gravity[d]) - r[i][d] - inertia;
       }
     }
-    const int outline_nodes = batch.topology->grid.outline_nodes();
     half_solved_[b].resize(r.size());
-    kept_.resize(outline_nodes);
-    matrix_[b].begin_solve(numbers(r), numbers(half_solved_[b]), numbers(kept_));
+    kept_[b].resize(batch.topology->grid.outline_nodes());
+    matrix_[b].begin_solve(numbers(r), numbers(half_solved_[b]), numbers(kept_[b]));
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
-      for (int v = 0; v < outline_nodes; ++v)
-        outline_increment_[grains.outline_begin(batch.grain[lane]) + v] = {kept_[v][0][lane],
-                                                                           kept_[v][1][lane]};
-  }
-  return Failure::none;
+      for (int v = 0; v < batch.topology->grid.outline_nodes(); ++v)
+        outline_increment_[grains.outline_begin(batch.grain[lane]) + v] = {kept_[b][v][0][lane],
+                                                                           kept_[b][v][1][lane]};
+  });
+  return none_failed(failed) ? Failure::none : Failure::inverted_point;
+}
+
+/// Remembers the first grain >= 0 as the one that failed.
+bool ImplicitDynamics::none_failed(std::span<const int> grain_of_batch) {
+  failed_grain_ = -1;
+  for (const int grain : grain_of_batch)
+    if (failed_grain_ < 0) failed_grain_ = grain;
+  return failed_grain_ < 0;
 }
 
 std::vector<double> ImplicitDynamics::friction_of_contacts() const {
@@ -207,34 +216,37 @@ bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
 /// x += A^-1 (r + H p/dt). Returns the largest correction [m].
 double ImplicitDynamics::correct() {
   const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, outline_.dt);
-  double largest = 0;
-  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+  std::vector<std::pair<double, int>> largest(batches());  // |dx|^2 and the grain where it is
+  parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];
     WideVectors& dx = force_[b];
     dx.assign(dx.size(), {});
     grains.scatter_outline(force, batch, dx);
-    kept_.assign(dx.begin() + batch.topology->grid.outline_begin, dx.end());
-    matrix_[b].finish_solve(numbers(half_solved_[b]), numbers(kept_), numbers(dx));
+    kept_[b].assign(dx.begin() + batch.topology->grid.outline_begin, dx.end());
+    matrix_[b].finish_solve(numbers(half_solved_[b]), numbers(kept_[b]), numbers(dx));
     for (std::size_t i = 0; i < batch.position.size(); ++i) {
       batch.position[i] += dx[i];
       const Wide square = dot(dx[i], dx[i]);
       for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
-        if (!(square[lane] <= largest)) largest = square[lane], failed_grain_ = batch.grain[lane];
+        if (!(square[lane] <= largest[b].first)) largest[b] = {square[lane], batch.grain[lane]};
     }
-  }
-  return std::sqrt(largest);
+  });
+  double most = 0;
+  for (const auto& [square, grain] : largest)
+    if (!(square <= most)) most = square, failed_grain_ = grain;
+  return std::sqrt(most);
 }
 
 /// v = (x - x_n)/dt; the walls' impulses; the work done; the contacts as they are at the end.
 ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& report) {
-  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+  std::vector<int> failed(batches(), -1);
+  parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];
-    if (const unsigned inverted = internal_force(grains, batch, force_[b]);
-        (failed_grain_ = grain_in(batch, inverted)) >= 0)
-      return Failure::inverted_point;
+    failed[b] = grain_in(batch, internal_force(grains, batch, force_[b]));
     for (std::size_t i = 0; i < batch.position.size(); ++i)
       batch.velocity[i] = Wide(1 / dt) * (batch.position[i] - start_[b][i]);
-  }
+  });
+  if (!none_failed(failed)) return Failure::inverted_point;
   balance_momentum(dt);
   grains.gather_outline(outline_.position);
   add_work(dt);

@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "softgrain/contact/solver_options.hpp"
@@ -66,8 +67,10 @@ class ImplicitDynamics {
   OutlineNeighbours neighbours_;
   std::vector<BatchedCholesky> matrix_;
   std::vector<OutlineCompliance> compliance_;
-  std::vector<WideVectors> start_, velocity_start_, half_solved_, force_;  // per batch
-  WideVectors kept_;                                                       // of one batch's outlines
+  int batches() const { return static_cast<int>(grains.batches.size()); }
+  bool none_failed(std::span<const int> grain_of_batch);
+
+  std::vector<WideVectors> start_, velocity_start_, half_solved_, force_, kept_;  // per batch
   std::vector<Vec<2>> outline_increment_;
   OutlineState outline_;
   std::vector<Wall<2>> walls_start_;

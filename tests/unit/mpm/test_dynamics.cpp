@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/mpm/equilibrium.hpp"
 #include "softgrain/mpm/explicit_step.hpp"
 #include "softgrain/mpm/implicit_step.hpp"
@@ -58,6 +59,34 @@ TEST_CASE("grains that collide keep their momentum to round-off, explicitly") {
   const double dt = stable_time_step(grains);
   check_collision(ExplicitDynamics(std::move(grains), {}, {.friction = 0.3}), dt, static_cast<int>(4e-5 / dt),
                   1e-13);
+}
+
+TEST_CASE("one, two and three threads give the same bits") {
+  std::vector<GrainPlacement> placed;  // three batches: two rows that fall on each other and on a floor
+  for (int g = 0; g < 18; ++g)
+    placed.push_back(test::placed(test::disk(g % 3 == 0 ? 3 : 4), 1e-3,
+                                  {2.05e-3 * (g % 9), 1.02e-3 + 2.05e-3 * (g / 9)},
+                                  {0.1 * g, -1 - 2.0 * (g / 9)}));
+  const SoftGrains grains(placed, make_law("neo_hookean", 1e6, 0.3), 1000, false);
+  const double dt = stable_time_step(grains);
+  const auto outline_after = [](auto dynamics, double step, int steps, int thread_count) {
+    set_threads(thread_count);
+    int most = 0;
+    for (int k = 0; k < steps; ++k) most = std::max(most, dynamics.step(step).contacts);
+    CHECK(most > 10);
+    std::vector<Vec<2>> x;
+    dynamics.grains.gather_outline(x);
+    return x;
+  };
+  const int before = threads();
+  const ImplicitDynamics implicit(grains, {test::floor_at(0)}, {.friction = 0.3});
+  const ExplicitDynamics explicit_(grains, {test::floor_at(0)}, {.friction = 0.3});
+  const auto x = outline_after(implicit, 5e-6, 15, 1), y = outline_after(explicit_, dt, 60, 1);
+  for (const int count : {2, 3}) {
+    CHECK(outline_after(implicit, 5e-6, 15, count) == x);
+    CHECK(outline_after(explicit_, dt, 60, count) == y);
+  }
+  set_threads(before);
 }
 
 TEST_CASE("a free grain falls: backward Euler and symplectic Euler give v = g t") {
