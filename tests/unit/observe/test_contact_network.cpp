@@ -96,7 +96,7 @@ TEST_CASE("Z of a random packing equals that counted pair by pair") {
   CHECK(coordination(contact_network(points, 60)).z == both_ways / 60.0);
 }
 
-TEST_CASE("rattlers are taken out until every grain left has two contacts; walls hold but do not count") {
+TEST_CASE("rattlers are taken out until every grain left has two contacts, and walls hold but do not count") {
   // a triangle 0 1 2 with a tail 2-3-4 and a free grain 5; grain 6 between two walls
   const std::vector<ContactPoint> points{push(0, 1, 1),
                                          push(1, 2, 1),
