@@ -41,10 +41,16 @@ Json json_of(const std::vector<Quantity>& row) {
   return json;
 }
 
-/// "diametral of bpm, 1750 primaries, friction 0, seed 1".
+/// "diametral of bpm, 1750 primaries, friction 0, seed 1", "compaction of mpm, 20 grains of 3584 points,
+/// ...".
 std::string summary(const Case& c) {
-  return fmt::format("{} of {}, {} primaries, friction {}, seed {}", c.experiment.loading, c.experiment.model,
-                     c.bpm.primaries, c.contact.friction, c.sample.seed);
+  const std::string grain = c.experiment.model == "mpm"
+                                ? fmt::format("{} points", 14 * c.mpm.cells * c.mpm.cells)
+                                : fmt::format("{} primaries", c.bpm.primaries);
+  const std::string grains =
+      c.experiment.loading == "diametral" ? "" : fmt::format("{} grains of ", c.sample.grains);
+  return fmt::format("{} of {}, {}{}, friction {}, seed {}", c.experiment.loading, c.experiment.model, grains,
+                     grain, c.contact.friction, c.sample.seed);
 }
 
 /// "strain 0.1  wall_height 9 mm ...", a few to a line.

@@ -217,5 +217,30 @@ class Pictures(Temporary):
         np.testing.assert_allclose([s.stress for s in stages], [0, 0.08e6, 0, 0.08e6], atol=1)
 
 
+class Cells(unittest.TestCase):
+    def test_material_points_are_drawn_as_the_mean_of_each_cell_within_their_outline(self):
+        from matplotlib.cm import ScalarMappable
+        from matplotlib.figure import Figure
+
+        from softgrain.plot import scene
+
+        corner = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+        inner = np.array([(x, y) for x in (0.25, 0.75) for y in (0.25, 0.75)])
+        points = np.concatenate([centre + 0.1 * (corner - 0.5) for centre in inner])
+        snapshot = softgrain.Snapshot(
+            step=0, time=0.0,
+            particles={"position": np.concatenate([points, points + [2, 0]]), "radius": np.full(32, 0.05),
+                       "grain": np.repeat([0, 1], 16), "stress": np.zeros((32, 4))},
+            outlines={"position": np.concatenate([corner, corner + [2, 0]]), "grain": np.repeat([0, 1], 4)})
+        self.assertTrue(scene.has_cells(snapshot))
+        axes = Figure().add_subplot()
+        values = np.tile([-1.0, 1.0, 3.0, 5.0], 8)  # a checkerboard within each cell
+        scene.draw_cells(axes, snapshot, values, ScalarMappable())
+        self.assertEqual(len(axes.collections), 2)
+        for surface in axes.collections:
+            self.assertEqual(surface.get_array().tolist(), [2.0] * 8)  # 4 cells, 4 corners
+            self.assertIsNotNone(surface.get_clip_path())
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -10,7 +10,7 @@ from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 
 from .. import NotRecorded, measure
-from .scene import STRONG, WEAK, draw_disks, draw_forces, pairs_of_particles
+from .scene import STRONG, WEAK, draw_cells, draw_disks, draw_forces, has_cells, pairs_of_particles
 from .style import PALE, POINT
 
 
@@ -37,6 +37,9 @@ class Pressure:
 
     def draw(self, axes, index, _millimetres_per_metre):
         values = self.values[index]
+        if values is not None and has_cells(self.snapshots[index]):
+            draw_cells(axes, self.snapshots[index], values, self.scale)
+            return
         colours = PALE if values is None else self.scale.to_rgba(values)
         draw_disks(axes, self.snapshots[index], colours, rim=self.rim)
 

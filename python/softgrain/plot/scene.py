@@ -19,6 +19,31 @@ def draw_disks(axes, snapshot, colours, rim="none"):
     axes.add_collection(disks)
 
 
+MOST_GRAINS_WITH_FIELDS = 60  # beyond, a triangulation takes too long and shows nothing more
+
+
+def has_cells(snapshot):
+    """Whether the particles are material points in cells of four, with outlines around them."""
+    many = np.ptp(snapshot.outlines["grain"]) >= MOST_GRAINS_WITH_FIELDS if "grain" in snapshot.outlines else True
+    return not many and {"stress", "grain"} <= snapshot.particles.keys()
+
+
+def draw_cells(axes, snapshot, values, scale):
+    """A field of material points: the mean of each cell's four, between the outlines of its grain."""
+    cells = snapshot.particles["position"].reshape(-1, 4, 2).mean(axis=1)
+    means = values.reshape(-1, 4).mean(axis=1)
+    grain = snapshot.particles["grain"].astype(int)[::4]
+    for g in range(grain.max() + 1):
+        outline = snapshot.outlines["position"][snapshot.outlines["grain"] == g]
+        inside = cells[grain == g]
+        nearest = np.argmin(((outline[:, None] - inside[None]) ** 2).sum(axis=2), axis=1)
+        points = np.concatenate([inside, outline])
+        field = np.concatenate([means[grain == g], means[grain == g][nearest]])
+        surface = axes.tripcolor(*points.T, field, shading="gouraud", norm=scale.norm, cmap=scale.cmap, rasterized=True)
+        rim = axes.fill(*outline.T, facecolor="none", edgecolor=INK, lw=0.4)[0]
+        surface.set_clip_path(rim)
+
+
 def draw_plates(axes, snapshot, thickness):
     """A bar along each wall, on the side away from the particles."""
     centre = snapshot.particles["position"].mean(axis=0)
