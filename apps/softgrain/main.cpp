@@ -39,10 +39,13 @@ void add_verbs(CLI::App& app) {
   add_reproduce_verb(app);
   add_plot_verb(app);
   add_report_verb(app);
+  add_export_verb(app);
+  add_paraview_verb(app);
   add_info_verb(app);
   add_solve_verb(app);
   add_schema_verb(app);
   add_doctor_verb(app);
+  add_completion_verb(app);
 }
 
 /// The verb that was named on the command line, or the program itself when there is none.

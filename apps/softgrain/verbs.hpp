@@ -33,7 +33,10 @@ void add_sweep_verb(CLI::App& app);
 void add_reproduce_verb(CLI::App& app);
 void add_plot_verb(CLI::App& app);
 void add_report_verb(CLI::App& app);
+void add_export_verb(CLI::App& app);
+void add_paraview_verb(CLI::App& app);
 void add_info_verb(CLI::App& app);
 void add_solve_verb(CLI::App& app);
+void add_completion_verb(CLI::App& app);
 
 }  // namespace softgrain

@@ -1,0 +1,80 @@
+"""Particles as text: extended XYZ and LAMMPS dumps (several frames, for OVITO), CSV (one frame)."""
+
+import numpy as np
+
+UNITS = {"position": "m", "radius": "m", "pressure": "Pa", "stress": "Pa", "velocity": "m/s"}
+AXES = {2: ("x", "y"), 4: ("xx", "xy", "yx", "yy")}
+
+
+def write_xyz(snapshots, file):
+    """Extended XYZ: species, x y z [m], then radius, grain, pressure as far as they are recorded."""
+    for snapshot in snapshots:
+        columns = {"species": ["grain"] * _count(snapshot), **_place(snapshot), **_marks(snapshot)}
+        kinds = "species:S:1:pos:R:3" + "".join(f":{name}:{_kind(values)}:1" for name, values in
+                                                 _marks(snapshot).items())
+        (x0, x1), (y0, y1), (z0, z1) = box(snapshot)
+        cell = f'Lattice="{x1 - x0:.9g} 0 0 0 {y1 - y0:.9g} 0 0 0 {z1 - z0:.9g}" Origin="{x0:.9g} {y0:.9g} {z0:.9g}"'
+        file.write(f'{_count(snapshot)}\n{cell} pbc="F F F" Properties={kinds} Time={snapshot.time:.9g} '
+                   f"Step={snapshot.step}\n")
+        file.writelines(" ".join(row) + "\n" for row in _rows(columns))
+
+
+def write_lammps(snapshots, file):
+    """LAMMPS' text dump: id type x y z [m] radius [m] mol (the grain, from 1) pressure [Pa]."""
+    for snapshot in snapshots:
+        marks = _marks(snapshot)
+        if "grain" in marks:
+            marks["mol"] = marks.pop("grain") + 1  # 0 means no molecule
+        count = _count(snapshot)
+        columns = {"id": np.arange(1, count + 1), "type": np.ones(count, int), **_place(snapshot), **marks}
+        bounds = "".join(f"{low:.9g} {high:.9g}\n" for low, high in box(snapshot))
+        file.write(f"ITEM: TIMESTEP\n{snapshot.step}\nITEM: NUMBER OF ATOMS\n{count}\n"
+                   f"ITEM: BOX BOUNDS ff ff ff\n{bounds}ITEM: ATOMS {' '.join(columns)}\n")
+        file.writelines(" ".join(row) + "\n" for row in _rows(columns))
+
+
+def write_csv(snapshot, file):
+    """One line per particle with all its fields; the header names columns and units as in series.csv."""
+    columns = {}
+    for name, values in sorted(snapshot.particles.items(), key=lambda item: item[0] != "position"):
+        unit = f"[{UNITS[name]}]" if name in UNITS else ""
+        if values.ndim == 1:
+            columns[name + unit] = values
+            continue
+        prefix = "" if name == "position" else f"{name}_"
+        axes = AXES.get(values.shape[1], range(values.shape[1]))
+        columns.update({f"{prefix}{axis}{unit}": column for axis, column in zip(axes, values.T)})
+    file.write(",".join(columns) + "\n")
+    file.writelines(",".join(row) + "\n" for row in _rows(columns))
+
+
+def box(snapshot):
+    """((x0, x1), (y0, y1), (z0, z1)) [m] around walls and particles; as thick as the thickest particle."""
+    radius = snapshot.particles["radius"][:, None]
+    position = snapshot.particles["position"]
+    corners = np.concatenate([position - radius, position + radius, snapshot.walls.reshape(-1, 2)])
+    thickness = radius.max()
+    return [*zip(corners.min(axis=0), corners.max(axis=0)), (-thickness, thickness)]
+
+
+def _count(snapshot):
+    return len(snapshot.particles["radius"])
+
+
+def _place(snapshot):
+    x, y = snapshot.particles["position"].T
+    return {"x": x, "y": y, "z": np.zeros_like(x)}
+
+
+def _marks(snapshot):
+    return {name: snapshot.particles[name] for name in ("radius", "grain", "pressure") if name in snapshot.particles}
+
+
+def _kind(values):
+    return "I" if np.issubdtype(values.dtype, np.integer) else "R"
+
+
+def _rows(columns):
+    """Each particle's cells as text; reals with the digits of a float32 and some more."""
+    return zip(*([f"{value:.9g}" if isinstance(value, float) else str(value) for value in np.asarray(column).tolist()]
+                 for column in columns.values()))

@@ -1,0 +1,209 @@
+"""What was exported is read back by readers of its format that are written here."""
+
+import contextlib
+import io
+import re
+import sys
+import tempfile
+import types
+import unittest
+from pathlib import Path
+from xml.etree import ElementTree
+
+import h5py
+import numpy as np
+import synthetic
+
+import softgrain
+from softgrain.export import __main__
+from softgrain.export.paraview import pressure_range
+from softgrain.export.picture import outline_polygons
+
+SQUARE = np.array([(0, 0), (2e-3, 0), (2e-3, 2e-3), (0, 2e-3)])
+
+
+def read_xyz(path):
+    """[(words of the comment line, rows)] of each frame."""
+    lines, frames = iter(path.read_text().splitlines()), []
+    for count in lines:
+        comment = next(lines)
+        frames.append((comment, [next(lines).split() for _ in range(int(count))]))
+    return frames
+
+
+def read_dump(path):
+    """[{step, bounds, columns, rows}] of each frame of LAMMPS' text dump."""
+    frames = []
+    for text in path.read_text().split("ITEM: TIMESTEP\n")[1:]:
+        step, _, count, bounds, *low_high = text.splitlines()[:7]
+        columns, *rows = text.splitlines()[7:]
+        frames.append(dict(step=int(step), count=int(count), bounds=bounds, box=np.loadtxt(low_high),
+                           columns=columns.split()[2:], rows=np.array([row.split() for row in rows], float)))
+    return frames
+
+
+class Temporary(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = synthetic.write_run(Path(temporary.name) / "squeeze", snapshots=3)
+        self.run_of_bonds = softgrain.open(self.folder)
+
+    def add_grains(self):
+        """Material points of two grains, each a square, into every snapshot."""
+        for path in self.run_of_bonds.snapshots:
+            with h5py.File(path, "r+") as file:
+                particles = file["scene/particles"]
+                count = len(particles["position"])
+                particles["grain"] = (np.arange(count) >= 10).astype(int)
+                particles["J"] = np.ones(count)
+                file["scene/outlines/position"] = np.concatenate([SQUARE, SQUARE + 3e-3])
+                file["scene/outlines/grain"] = [0] * 4 + [1] * 4
+
+    def export(self, *arguments):
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            code = __main__.main([str(self.folder), *map(str, arguments)])
+        return code, Path(out.getvalue().strip()), err.getvalue()
+
+
+class Particles(Temporary):
+    def test_extended_xyz_has_every_frame_with_radius_and_pressure(self):
+        code, path, _ = self.export("--to=xyz")
+        frames = read_xyz(path)
+        self.assertEqual((code, len(frames)), (0, 3))
+        for (comment, rows), snapshot in zip(frames, self.run_of_bonds):
+            self.assertIn("Properties=species:S:1:pos:R:3:radius:R:1:pressure:R:1 ", comment)
+            self.assertIn(f" Step={snapshot.step}", comment)
+            numbers = np.array([row[1:] for row in rows], float)
+            np.testing.assert_allclose(numbers[:, :2], snapshot.particles["position"], rtol=1e-8)
+            np.testing.assert_allclose(numbers[:, 4], snapshot.particles["pressure"], rtol=1e-8)
+        lattice = np.array(re.search('Lattice="([^"]*)"', frames[0][0])[1].split(), float).reshape(3, 3)
+        self.assertAlmostEqual(lattice[0, 0], 6e-3)  # the plates are 6 mm long
+
+    def test_a_lammps_dump_counts_grains_from_one_and_holds_all_particles_in_its_box(self):
+        self.add_grains()
+        _, path, _ = self.export("--to=lammps")
+        frames = read_dump(path)
+        self.assertEqual([frame["step"] for frame in frames], [s.step for s in self.run_of_bonds])
+        for frame, snapshot in zip(frames, self.run_of_bonds):
+            self.assertEqual(frame["bounds"], "ITEM: BOX BOUNDS ff ff ff")
+            self.assertEqual(frame["columns"], "id type x y z radius pressure mol".split())
+            np.testing.assert_array_equal(frame["rows"][:, 7], snapshot.particles["grain"] + 1)
+            np.testing.assert_allclose(frame["rows"][:, 2:4], snapshot.particles["position"], rtol=1e-8)
+            self.assertTrue((frame["rows"][:, 2:5] >= frame["box"][:, 0]).all())
+            self.assertTrue((frame["rows"][:, 2:5] <= frame["box"][:, 1]).all())
+
+    def test_a_table_has_one_frame_and_says_its_units(self):
+        _, path, _ = self.export("--to=csv", "--frame=1")
+        header, *rows = path.read_text().splitlines()
+        self.assertEqual(header, "x[m],y[m],pressure[Pa],radius[m]")
+        np.testing.assert_allclose(np.array([row.split(",") for row in rows], float)[:, :2],
+                                   self.run_of_bonds[1].particles["position"], rtol=1e-8)
+
+    def test_a_frame_that_is_not_there_is_refused(self):
+        code, _, err = self.export("--to=csv", "--frame=3")
+        self.assertEqual(code, 2)
+        self.assertIn("3 snapshots", err)
+
+
+class Pictures(Temporary):
+    def svg(self, *arguments):
+        _, path, _ = self.export("--to=svg", *arguments)
+        return ElementTree.parse(path).getroot()
+
+    def test_bonded_grains_are_disks_with_their_radius_to_scale(self):
+        root = self.svg("--frame=0")
+        disks = root.findall("{*}circle")
+        position = self.run_of_bonds[0].particles["position"]
+        self.assertEqual(len(disks), len(position))
+        pixels = np.array([(float(d.get("cx")), -float(d.get("cy"))) for d in disks])
+        scale = (pixels[-1] - pixels[0]) / (position[-1] - position[0])
+        np.testing.assert_allclose(scale, scale[0], rtol=1e-3)
+        self.assertAlmostEqual(float(disks[0].get("r")), scale[0] * synthetic.RADIUS, places=1)
+        self.assertEqual(len(root.findall("{*}line")), 2)
+
+    def test_elastic_grains_are_their_outlines_the_more_pressed_the_brighter(self):
+        self.add_grains()
+        polygons = self.svg().findall("{*}polygon")
+        self.assertEqual([len(p.get("points").split()) for p in polygons], [4, 4])
+        green = [int(p.get("fill")[3:5], 16) for p in polygons]
+        self.assertLess(green[0], green[1])  # pressure rises with the particle's number
+
+
+class Paraview(Temporary):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "vtk").mkdir()
+        for snapshot in self.run_of_bonds:
+            for kind in ("particles", "contacts", "walls"):
+                (self.folder / f"vtk/{kind}_{snapshot.step:06d}.vtp").touch()
+
+    def test_the_polygons_of_the_grains_are_read_back_from_their_files(self):
+        self.add_grains()
+        code, scene, _ = self.export("--to=paraview")
+        self.assertEqual(code, 0)
+        collection = ElementTree.parse(scene.with_name("grains.pvd")).findall(".//DataSet")
+        times = [float(entry.get("timestep")) for entry in collection]
+        np.testing.assert_allclose(times, [s.time for s in self.run_of_bonds])
+        piece = ElementTree.parse(scene.with_name(collection[-1].get("file"))).find(".//Piece")
+        arrays = {a.get("Name"): np.array(a.text.split(), float) for a in piece.iter("DataArray")}
+        np.testing.assert_allclose(arrays["position"].reshape(-1, 3)[:4, :2], SQUARE)
+        self.assertEqual(arrays["offsets"].tolist(), [4, 8])
+        self.assertEqual(arrays["connectivity"].tolist(), list(range(8)))
+        last = self.run_of_bonds[-1].particles
+        self.assertAlmostEqual(arrays["pressure"][0], last["pressure"][:10].mean(), places=1)
+        self.assertEqual(piece.get("NumberOfPolys"), "2")
+
+    def test_every_file_of_every_series_is_there(self):
+        _, scene, _ = self.export("--to=paraview")
+        for kind in ("particles", "contacts", "walls"):
+            entries = ElementTree.parse(scene.with_name(f"{kind}.pvd")).findall(".//DataSet")
+            self.assertEqual(len(entries), 3)
+            for entry in entries:
+                self.assertTrue((scene.parent / entry.get("file")).exists())
+
+    def test_the_script_runs_and_shows_each_series_with_one_range_of_pressures(self):
+        """With a stand-in for ParaView that takes every call and writes down the readers and the range."""
+        self.add_grains()
+        _, scene, _ = self.export("--to=paraview")
+        shown, ranges = [], []
+
+        class Thing:
+            def __getattr__(self, name):
+                return lambda *a, **k: ranges.append(a) if name == "RescaleTransferFunction" else Thing()
+
+        class Module(types.ModuleType):
+            def __getattr__(self, name):
+                def call(*arguments, **words):
+                    if name == "PVDReader":
+                        shown.append(words["FileName"])
+                    return Thing()
+                return call
+
+        sys.modules.update({"paraview": types.ModuleType("paraview"), "paraview.simple": Module("simple")})
+        self.addCleanup(lambda: [sys.modules.pop(name) for name in ("paraview", "paraview.simple")])
+        exec(compile(scene.read_text(), str(scene), "exec"), {})
+        self.assertEqual([Path(path).name for path in shown],
+                         ["grains.pvd", "particles.pvd", "contacts.pvd", "walls.pvd"])
+        self.assertTrue(all(Path(path).exists() for path in shown))
+        np.testing.assert_allclose(ranges[0], pressure_range(list(self.run_of_bonds)), rtol=1e-5)
+
+    def test_a_run_without_files_for_paraview_is_refused(self):
+        for path in (self.folder / "vtk").iterdir():
+            path.unlink()
+        code, _, err = self.export("--to=paraview")
+        self.assertEqual(code, 2)
+        self.assertIn("output.vtk", err)
+
+
+class Outlines(Temporary):
+    def test_each_grain_is_a_polygon(self):
+        self.add_grains()
+        polygons = outline_polygons(self.run_of_bonds[0])
+        self.assertEqual([grain for grain, _ in polygons], [0, 1])
+        np.testing.assert_array_equal(polygons[0][1], SQUARE)
+
+
+if __name__ == "__main__":
+    unittest.main()

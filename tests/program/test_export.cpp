@@ -1,0 +1,59 @@
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "support/subprocess.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace fs = std::filesystem;
+using softgrain::test::read_text;
+using softgrain::test::TemporaryDirectory;
+
+namespace {
+
+softgrain::test::ProcessResult call(const TemporaryDirectory& folder, std::vector<std::string> words) {
+  words.insert(words.begin(), SOFTGRAIN_PROGRAM);
+  return softgrain::test::run(words, {}, folder.path().string());
+}
+
+/// A packing of six elastic grains in "run".
+void make_run(const TemporaryDirectory& folder) {
+  const auto path = folder.file(
+      "case.toml",
+      "[experiment]\nmodel = \"mpm\"\nloading = \"compaction\"\n[sample]\ngrains = 6\npacking_fraction = "
+      "0.4\n"
+      "[mpm]\ncells = 4\n[loading]\nmax_strain = 0.05\nwall_velocity = \"5 m/s\"\n[output]\nsnapshots = 2\n"
+      "report = false\n");
+  const auto made = call(folder, {"run", path, "-o", "run", "--quiet"});
+  REQUIRE_MESSAGE(made.exit_code == 0, made.err);
+}
+
+}  // namespace
+
+TEST_CASE("a packing is exported in every format that export lists") {
+  const TemporaryDirectory folder;
+  make_run(folder);
+  for (const char* format : {"xyz", "lammps", "csv", "svg"}) {
+    const auto exported = call(folder, {"export", "run", "--to", format});
+    CHECK_MESSAGE(exported.exit_code == 0, exported.err);
+    const std::string path = exported.out.substr(0, exported.out.find('\n'));
+    CHECK(fs::file_size(folder.path() / path) > 500);
+  }
+  CHECK(call(folder, {"export", "run", "--to", "svg", "--frame", "-1", "-o", "end.svg"}).out == "end.svg\n");
+  CHECK(read_text(folder.path() / "end.svg").find("</svg>") != std::string::npos);
+  CHECK(call(folder, {"export", "run", "--to", "doc"}).exit_code == 2);
+  CHECK(call(folder, {"export", "run", "--to", "csv", "--frame", "last"}).exit_code == 2);
+  CHECK(call(folder, {"export", "run", "--to", "csv", "--frame", "99"}).exit_code == 2);
+}
+
+TEST_CASE("paraview gets a script that names the files of the run") {
+  const TemporaryDirectory folder;
+  make_run(folder);
+  const auto written = call(folder, {"paraview", "run"});
+  CHECK_MESSAGE(written.out == "run/paraview/scene.py\n", written.err);
+  const std::string script = read_text(folder.path() / "run/paraview/scene.py");
+  CHECK(script.find((folder.path() / "run/paraview").string()) != std::string::npos);
+  CHECK(call(folder, {"paraview", "nothing"}).exit_code == 2);
+}
