@@ -4,6 +4,7 @@ import json
 import tomllib
 from dataclasses import dataclass, field
 from functools import cached_property
+from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -29,7 +30,7 @@ class Snapshot:
     outlines: dict = field(default_factory=dict)  # position (v, 2) [m], grain (v,): counter-clockwise polygons
 
     @classmethod
-    def read(cls, path):
+    def read(cls, path: str | Path) -> "Snapshot":
         """Reads one snapshot file. Raises OSError if it is damaged or missing."""
         import h5py
 
@@ -55,32 +56,37 @@ class Run:
     path: Path
 
     @property
-    def name(self):
+    def name(self) -> str:
         return self.path.resolve().name
 
+    @property
+    def plot(self) -> "Plots":
+        """The figures of this run: `run.plot.curve()`, `.grain()`, `.diagnostics()`."""
+        return Plots(self)
+
     @cached_property
-    def case(self):
+    def case(self) -> dict:
         """The resolved case, SI."""
         return tomllib.loads((self.path / "case.toml").read_text())
 
     @cached_property
-    def info(self):
+    def info(self) -> dict:
         """The provenance (run.json); empty if the run never wrote it."""
         path = self.path / "run.json"
         return json.loads(path.read_text()) if path.exists() else {}
 
     @property
-    def series(self):
+    def series(self) -> dict[str, np.ndarray]:
         """Column name (without unit) -> array over the samples."""
         return self._table[0]
 
     @property
-    def units(self):
+    def units(self) -> dict[str, str]:
         """Column name -> unit, "" for a pure number."""
         return self._table[1]
 
     @cached_property
-    def snapshots(self):
+    def snapshots(self) -> list[Path]:
         """Paths of the snapshots, oldest first."""
         return sorted((self.path / "snap").glob("s*.h5"))
 
@@ -88,14 +94,47 @@ class Run:
     def _table(self):
         return _read_series(self.path / "series.csv")
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.snapshots)
 
-    def __getitem__(self, index):
+    def __getitem__(self, index: int) -> Snapshot:
         return Snapshot.read(self.snapshots[index])
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows: state, verdict and the last row."""
+        last = {name: f"{values[-1]:.6g} {self.units[name]}" for name, values in self.series.items()}
+        facts = {"state": self.info.get("state", "not begun"), "verdict": self.info.get("verdict", ""),
+                 "snapshots": len(self), **last}
+        rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(str(text))}</td></tr>" for name, text in facts.items())
+        return f"<table><caption>{escape(self.name)}</caption>{rows}</table>"
 
-def open_run(path):
+
+@dataclass(frozen=True)
+class Plots:
+    """The figures of a run in the style of the package; each is a Matplotlib Figure. Needs Matplotlib."""
+
+    run: Run
+
+    def curve(self, normalise: bool = False):
+        """Stress against strain."""
+        return self._draw("draw_curve", [self.run], normalise=normalise)
+
+    def grain(self):
+        """The particles at the moments that matter."""
+        return self._draw("draw_grain", self.run)
+
+    def diagnostics(self):
+        """What the solver and the energies did."""
+        return self._draw("draw_diagnostics", self.run)
+
+    def _draw(self, name, *arguments, **options):
+        from . import plot
+
+        with plot.style():
+            return getattr(plot, name)(*arguments, **options)
+
+
+def open_run(path: str | Path) -> Run:
     """The run in directory `path`. Raises NotARun if there is none."""
     path = Path(path)
     if not (path / "case.toml").is_file():

@@ -1,6 +1,7 @@
 """What was exported is read back by readers of its format that are written here."""
 
 import contextlib
+import dataclasses
 import io
 import re
 import sys
@@ -17,6 +18,7 @@ import synthetic
 import softgrain
 from softgrain.export import __main__
 from softgrain.export.paraview import pressure_range
+from softgrain.export.particles import box
 from softgrain.export.picture import outline_polygons
 
 SQUARE = np.array([(0, 0), (2e-3, 0), (2e-3, 2e-3), (0, 2e-3)])
@@ -100,6 +102,11 @@ class Particles(Temporary):
         self.assertEqual(header, "x[m],y[m],pressure[Pa],radius[m]")
         np.testing.assert_allclose(np.array([row.split(",") for row in rows], float)[:, :2],
                                    self.run_of_bonds[1].particles["position"], rtol=1e-8)
+
+    def test_the_box_holds_whole_particles_also_without_walls(self):
+        alone = dataclasses.replace(self.run_of_bonds[0], walls=np.empty((0, 4)))
+        x = alone.particles["position"][:, 0]
+        np.testing.assert_allclose(box(alone)[0], (x.min() - synthetic.RADIUS, x.max() + synthetic.RADIUS))
 
     def test_a_frame_that_is_not_there_is_refused(self):
         code, _, err = self.export("--to=csv", "--frame=3")

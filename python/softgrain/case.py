@@ -1,0 +1,72 @@
+"""A case and its run, through the program `softgrain`."""
+
+import json
+import os
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+from .run import Run, open_run
+
+
+class CaseError(ValueError):
+    """The case is invalid; the message is the program's, with the nearest valid key."""
+
+
+class RunFailed(RuntimeError):
+    """The run ended before its end; `code` is the program's exit code, 75 or 130 after a signal."""
+
+    def __init__(self, message: str, code: int):
+        super().__init__(message)
+        self.code = code
+
+
+@dataclass(frozen=True)
+class Case:
+    """A case file and values that replace its own: `Case("case.toml").set("contact.friction", 0.3)`."""
+
+    path: str | Path
+    values: tuple[tuple[str, str], ...] = ()
+
+    def set(self, key: str, value) -> "Case":
+        """The same case with one more value replaced; a quantity is a number in SI or text, "0.05 us"."""
+        kept = tuple(pair for pair in self.values if pair[0] != key)
+        return Case(self.path, (*kept, (key, _toml(value))))
+
+    def resolve(self) -> dict:
+        """The whole case in SI, with every default filled in. Raises CaseError."""
+        return json.loads(_call("check", *self._words(), "--json"))["case"]
+
+    def _words(self) -> list[str]:
+        return [str(self.path), *(f"--set={key}={value}" for key, value in self.values)]
+
+
+def run_case(case: Case | str | Path, directory: str | Path, threads: int | None = None, resume: bool = False) -> Run:
+    """Carries out the case in `directory` and opens it. Raises CaseError, RunFailed; Ctrl-C leaves a snapshot."""
+    case = case if isinstance(case, Case) else Case(case)
+    options = ["--resume"] if resume else []
+    if threads is not None:
+        options.append(f"--threads={threads}")
+    _call("run", *case._words(), "-o", str(directory), "--quiet", *options)
+    return open_run(directory)
+
+
+def _call(*words: str) -> str:
+    """Stdout of `softgrain words`; SOFTGRAIN_PROGRAM names another program."""
+    program = os.environ.get("SOFTGRAIN_PROGRAM", "softgrain")
+    with subprocess.Popen([program, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            out, err = process.communicate()
+        except KeyboardInterrupt:
+            process.wait()  # it got Ctrl-C as well, and writes its last snapshot
+            raise
+    if process.returncode == 2:
+        raise CaseError(err.strip())
+    if process.returncode != 0:
+        raise RunFailed(err.strip() or f"stopped with exit code {process.returncode}", process.returncode)
+    return out
+
+
+def _toml(value) -> str:
+    """A Python value as it is written in a case file."""
+    return value if isinstance(value, str) else json.dumps(value)
