@@ -26,6 +26,7 @@ void print_json(const Case& the_case, const Estimate& estimate) {
                                         {"contacts", estimate.contacts},
                                         {"steps", estimate.steps},
                                         {"memory_bytes", estimate.memory},
+                                        {"disk_bytes", estimate.disk},
                                         {"hours", estimate.hours}}}};
   fmt::print("{}\n", result.dump(2));
 }
@@ -36,10 +37,10 @@ void print_estimate(const Case& the_case, const Estimate& estimate) {
   fmt::print(stderr,
              "{} {}, about {} contacts\n"
              "about {} time steps\n"
-             "about {:.0f} MB of memory\n"
+             "about {:.0f} MB of memory, {:.0f} MB of disk\n"
              "{} {} on one thread\n",
              count(estimate.particles), bpm ? "primary particles" : "material points",
-             count(estimate.contacts), count(estimate.steps), estimate.memory / 1e6,
+             count(estimate.contacts), count(estimate.steps), estimate.memory / 1e6, estimate.disk / 1e6,
              bpm ? "at most" : "about", duration_text(3600 * estimate.hours));
 }
 

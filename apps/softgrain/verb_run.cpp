@@ -8,9 +8,11 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/experiment/create.hpp"
+#include "softgrain/experiment/estimate.hpp"
 #include "softgrain/io/case_file.hpp"
 #include "softgrain/io/case_text.hpp"
 #include "softgrain/io/report_page.hpp"
+#include "softgrain/io/resources.hpp"
 #include "softgrain/io/run_recorder.hpp"
 #include "softgrain/io/units.hpp"
 #include "terminal.hpp"
@@ -125,6 +127,7 @@ void run_case(const RunArguments& arguments) {
           "{} is not the case that {} was begun with; `softgrain resume {}` goes on with the stored one",
           source.path, paths.root.string(), paths.root.string());
   const bool keep = arguments.force || going_on;
+  if (!keep) require_resources(estimate(request.the_case), available_resources(paths.root));
   const RunDirectory directory(paths.root,
                                keep ? RunDirectory::IfNotEmpty::keep : RunDirectory::IfNotEmpty::refuse);
   carry_out(request, directory, arguments.options);
@@ -151,7 +154,9 @@ void add_run_verb(CLI::App& app) {
       ->type_name("DIR");
   auto* resume =
       run->add_flag("--resume", arguments->resume, "go on from the newest intact snapshot, if there is one");
-  run->add_flag("--force", arguments->force, "replace an earlier run's results")->excludes(resume);
+  run->add_flag("--force", arguments->force,
+                "replace an earlier run's results; begin even where memory or disk seem too small")
+      ->excludes(resume);
   add_run_options(*run, arguments->options);
   run->footer(
       "Examples:\n"

@@ -25,8 +25,10 @@ double travel(const Case& c) {
   const auto travel_to = [&](double strain) {
     return is_diametral(c) ? plate_travel(strain, c.grain.radius) : -side * std::expm1(-strain);
   };
-  const double last = is_diametral(c) ? c.loading.max_strain
-                                      : CompactionPath::last_strain(c.loading, c.sample.packing_fraction);
+  const double last = is_diametral(c)
+                          ? c.loading.max_strain
+                          : CompactionPath::last_strain(c.loading, c.sample.packing_fraction,
+                                                        c.experiment.loading == "isotropic" ? 2 : 1);
   double path = travel_to(last);
   for (const double turn : c.loading.unload_at)
     if (turn < last) path += 2 * (travel_to(turn) - travel_to(turn - c.loading.unload_by));
@@ -65,6 +67,13 @@ double seconds_of_step(const Case& c, const Estimate& e) {
   return batches * 8 * e.particles / grains(c) * (is_implicit(c) ? 9e-7 : 1.2e-8);
 }
 
+/// Snapshots and ParaView's files of a whole run [bytes], as measured by primary and by material point.
+double disk(const Case& c, double particles) {
+  const double frames = c.output.snapshots + 1 + 2 * static_cast<double>(c.loading.unload_at.size());
+  const double bytes_of_particle = (c.experiment.model == "bpm" ? 280 : 150) + (c.output.vtk ? 75 : 0);
+  return frames * (20e3 + bytes_of_particle * particles);
+}
+
 }  // namespace
 
 Estimate estimate(const Case& the_case) {
@@ -77,6 +86,7 @@ Estimate estimate(const Case& the_case) {
   result.steps =
       std::round((travel(the_case) / the_case.loading.wall_velocity + rest(the_case)) / time_step(the_case));
   result.memory = 50e6 + 1000 * result.particles + 200 * result.contacts;
+  result.disk = disk(the_case, result.particles);
   result.hours = result.steps * seconds_of_step(the_case, result) * second;
   return result;
 }

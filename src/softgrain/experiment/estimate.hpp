@@ -12,6 +12,7 @@ struct Estimate {
       0;  ///< bpm: 2.2 per primary, a dense packing has about 2; mpm: half of the outlines' vertices
   double steps = 0;   ///< of the loading path; preparing the sample comes on top
   double memory = 0;  ///< [bytes] 50 MB + 1 kB per particle + 200 B per contact
+  double disk = 0;    ///< [bytes] snapshots and ParaView's files
   double hours = 0;   ///< [h] on one thread; bpm: at most, every step with all sweeps
 };
 

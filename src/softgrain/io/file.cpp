@@ -1,11 +1,14 @@
 #include "softgrain/io/file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <limits>
 
 #include "softgrain/core/error.hpp"
 
@@ -33,6 +36,20 @@ std::size_t write_all(int descriptor, std::string_view bytes) {
   return done;
 }
 
+/// The rest of the file, or its first `size` bytes.
+std::string read_all(const Descriptor& file, const fs::path& path, std::size_t size) {
+  std::string bytes;
+  std::array<char, 65536> piece;
+  while (bytes.size() < size) {
+    const ssize_t n = ::read(file.number(), piece.data(), std::min(piece.size(), size - bytes.size()));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail(path, "cannot read");
+    if (n == 0) break;
+    bytes.append(piece.data(), static_cast<std::size_t>(n));
+  }
+  return bytes;
+}
+
 /// A rename is safe from a power cut only when the directory is on the disk too.
 void sync_directory(const fs::path& directory) {
   const Descriptor handle = open_file(directory, O_RDONLY | O_DIRECTORY);
@@ -56,16 +73,15 @@ Descriptor open_file(const fs::path& path, int flags) {
 }
 
 std::string read_file(const fs::path& path) {
-  const Descriptor file = open_file(path, O_RDONLY);
-  std::string bytes;
-  std::array<char, 65536> piece;
-  for (;;) {
-    const ssize_t n = ::read(file.number(), piece.data(), piece.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail(path, "cannot read");
-    if (n == 0) return bytes;
-    bytes.append(piece.data(), static_cast<std::size_t>(n));
-  }
+  const Descriptor file = open_file(path, O_RDONLY | O_NONBLOCK);  // a named pipe must not hold us up
+  struct stat status {};
+  if (::fstat(file.number(), &status) != 0) fail(path, "cannot read");
+  if (!S_ISREG(status.st_mode)) throw IoError(fmt::format("{}: not a regular file", path.string()));
+  return read_all(file, path, std::numeric_limits<std::size_t>::max());
+}
+
+std::string read_beginning(const fs::path& path, std::size_t size) {
+  return read_all(open_file(path, O_RDONLY), path, size);
 }
 
 PendingFile::PendingFile(fs::path path, std::string_view bytes, Survives survives)

@@ -28,8 +28,11 @@ class Descriptor {
 /// open(2) with O_CLOEXEC and mode 0666. Raises IoError.
 Descriptor open_file(const std::filesystem::path& path, int flags);
 
-/// The whole file. Raises IoError.
+/// The whole file, which must be a regular one: never waits for a pipe or reads a device. Raises IoError.
 std::string read_file(const std::filesystem::path& path);
+
+/// The first `size` bytes of anything that can be read, or all when there are fewer. Raises IoError.
+std::string read_beginning(const std::filesystem::path& path, std::size_t size);
 
 /// What a finished file survives. A power cut costs two waits for the disk.
 enum class Survives { kill, power_cut };
