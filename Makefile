@@ -1,9 +1,9 @@
 # Short names for the commands of everyday work; each recipe also works typed by hand.
 .DEFAULT_GOAL := help
-.PHONY: help demo test check bench clean
+.PHONY: help demo test check torture bench clean
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-6s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-7s %s\n", $$1, $$2}' Makefile
 
 demo: ## one soft grain between two plates: builds, simulates, draws (out/demo/figures)
 	@tools/install_dependencies.sh
@@ -28,6 +28,12 @@ check: ## format, layers, self-contained headers, clang-tidy
 	tools/check_headers
 	tools/check_viewer
 	tools/check_tidy
+
+torture: ## the long forms of the reliability tests: 100 kills, every call failing in turn
+	@tools/install_dependencies.sh
+	cmake --preset dev
+	cmake --build --preset dev
+	SOFTGRAIN_TORTURE=1 ctest --preset dev -L reliability --timeout 3600
 
 bench: ## measures the speed, ours and the peers'
 	@tools/install_dependencies.sh --with bench
