@@ -4,14 +4,24 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
 
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/io/case_file.hpp"
 #include "softgrain/io/case_text.hpp"
 #include "softgrain/io/progress.hpp"
+#include "softgrain/material/any_law.hpp"
 #include "verbs.hpp"
 
 namespace softgrain {
+
+std::string caution_of(const Case& the_case) {
+  if (the_case.experiment.model != "mpm") return "";
+  const std::string_view caution = law_choice(the_case.mpm.law).caution;
+  return caution.empty() ? "" : fmt::format("note: mpm.law: {}", caution);
+}
+
 namespace {
 
 struct CheckOptions {
@@ -51,6 +61,7 @@ void check(const CheckOptions& options) {
   fmt::print("{}", resolved_case_text(the_case));
   std::fflush(stdout);
   print_estimate(the_case, cost);
+  if (const std::string caution = caution_of(the_case); !caution.empty()) fmt::print(stderr, "{}\n", caution);
 }
 
 }  // namespace

@@ -96,6 +96,8 @@ void carry_out(const RunRequest& request, const RunDirectory& directory, const R
   {
     Progress progress(options.quiet ? ProgressStyle::none : options.progress);
     if (!options.quiet) progress.message("results go to " + directory.paths().root.string());
+    if (const std::string caution = caution_of(request.the_case); !caution.empty() && !options.quiet)
+      progress.message(caution);
     outcome = record_run(*simulation, directory, request, progress, signals);
   }
   const RunPaths& paths = directory.paths();

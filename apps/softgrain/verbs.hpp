@@ -8,6 +8,8 @@ class App;
 
 namespace softgrain {
 
+struct Case;
+
 /// Thrown by a verb's callback to end the program with an exit code of its own, without a message: 130 after
 /// SIGINT, 75 after SIGTERM (requeue me). Errors are exceptions of core/error.hpp; plain return is exit code
 /// 0.
@@ -21,6 +23,9 @@ struct CaseArguments {
   std::vector<std::string> sets;
 };
 void add_case_arguments(CLI::App& verb, CaseArguments& arguments);
+
+/// What a user should know who runs a valid case: "note: ..."; "" for nothing.
+std::string caution_of(const Case& the_case);
 
 // One verb each: adds a subcommand whose callback does the work after the whole command line has been parsed.
 // Results go to stdout, progress and log to stderr.

@@ -68,3 +68,16 @@ TEST_CASE(
   CHECK(verified.exit_code == 0);
   CHECK(verified.out.find("snapshots are intact") != std::string::npos);
 }
+
+TEST_CASE("whoever chooses a law that fails in packings is told so") {
+  const TemporaryDirectory folder;
+  const std::string named = folder.path() / "case";
+  REQUIRE(softgrain::test::run({SOFTGRAIN_PROGRAM, "new", named, "--template", "compaction-mpm"}).exit_code ==
+          0);
+  const std::vector<std::string> check{SOFTGRAIN_PROGRAM, "check", named + "/case.toml"};
+  CHECK(softgrain::test::run(check).err.find("note:") == std::string::npos);
+  std::vector<std::string> other = check;
+  other.insert(other.end(), {"--set", "mpm.law=st_venant_kirchhoff"});
+  CHECK(softgrain::test::run(other).err.find("note: mpm.law: st_venant_kirchhoff softens") !=
+        std::string::npos);
+}

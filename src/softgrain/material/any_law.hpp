@@ -19,7 +19,7 @@ using AnyLaw = std::variant<NeoHookean<LogVolume>, NeoHookean<QuadraticVolume>, 
 struct LawChoice {
   std::string_view name;
   std::string_view text;     ///< what it is, for the documentation of the key
-  std::string_view caution;  ///< what the user must be told who chooses it; empty: nothing
+  std::string_view caution;  ///< what the program tells the user who chooses it; empty: nothing
   AnyLaw (*make)(double E, double nu);
 };
 
