@@ -1,10 +1,12 @@
 // The command line program: parses the arguments, calls one verb, turns its outcome into an exit code.
 #include <fmt/core.h>
 #include <fmt/format.h>
+#include <unistd.h>
 #include <CLI/CLI.hpp>
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
@@ -118,12 +120,31 @@ int run_program(int argc, char** argv) {
   return success;
 }
 
+/// Without asking for memory.
+[[noreturn]] void leave_without_memory() {
+  std::fputs("error: out of memory; `softgrain check CASE` tells what a run needs\n", stderr);
+  _exit(input_output);
+}
+
+/// Memory may run out in a destructor (nlohmann::json's asks for some), where nothing can be caught.
+[[noreturn]] void on_terminate() {
+  try {
+    if (const auto error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    leave_without_memory();
+  } catch (...) {
+    // our bug
+  }
+  std::abort();
+}
+
 }  // namespace
 }  // namespace softgrain
 
 int main(int argc, char** argv) {
   using namespace softgrain;
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of the write, not the end
+  std::set_terminate(on_terminate);
   try {
     return run_program(argc, argv);
   } catch (const ExitCode& exit) {
@@ -144,8 +165,7 @@ int main(int argc, char** argv) {
     print_error(fmt::format("error: {}", error.what()));
     return input_output;
   } catch (const std::bad_alloc&) {
-    std::fputs("error: out of memory; `softgrain check CASE` tells what a run needs\n", stderr);
-    return input_output;
+    leave_without_memory();
   } catch (const std::exception& error) {
     print_error(fmt::format("error: {}\nthis is a bug, please report", error.what()));
     return our_bug;
