@@ -49,7 +49,8 @@ class Cases(unittest.TestCase):
 
     def test_values_are_written_as_in_a_case_file(self):
         case = softgrain.Case("c").set("loading.unload_at", [0.1, 0.2]).set("time.step", "0.05 us")
-        self.assertEqual(case.resolve()["words"][2:4], ["--set=loading.unload_at=[0.1, 0.2]", "--set=time.step=0.05 us"])
+        self.assertEqual(case.resolve()["words"][2:4],
+                         ["--set=loading.unload_at=[0.1, 0.2]", "--set=time.step=0.05 us"])
 
     def test_a_case_is_run_into_its_directory_and_opened(self):
         run = softgrain.run_case(softgrain.Case("c").set("sample.seed", 7), self.folder / "out", threads=2)
