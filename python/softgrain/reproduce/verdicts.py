@@ -135,7 +135,7 @@ def _coordination(results):
         yield Verdict("3", f"{model.upper()}, mu = {friction:g}: Z reaches 5.5", f"{most.text()}",
                       5.2 <= most.mean <= 5.8, "walls hold grains but do not count: few grains have a lower Z")
     for model, words in (("mpm", "little"), ("bpm", "no")):
-        change = Spread.of([_largest_z_change(a, b) for a, b in
+        change = Spread.of([_mean_z_change(a, b) for a, b in
                             zip(results.packings[model, 0.5], results.packings[model, 0.0])])
         yield Verdict("3", f"{model.upper()}: friction has {words} effect on Z",
                       f"mean change of Z at equal Phi {change.text()}", abs(change.mean) < 0.3)
@@ -145,7 +145,8 @@ def _coordination(results):
                   f"deformed outlines fill {phi.text()} at eps = {Spread.of(ends).text()}", abs(phi.mean - 0.93) < 0.02, "0.7 exp(0.4) = 1.04; Phi = 0.93 is eps = 0.28 if grains keep their area")
 
 
-def _largest_z_change(rough, smooth):
+def _mean_z_change(rough, smooth):
+    """Mean difference of Z at equal Phi, beyond the reference state."""
     phi = np.linspace(0.82, min(rough.phi.max(), smooth.phi.max()) - 0.01, 40)
     return float(np.mean(np.interp(phi, rough.phi, rough.z) - np.interp(phi, smooth.phi, smooth.z)))
 
