@@ -105,10 +105,10 @@ class Temporary(unittest.TestCase):
             code = __main__.main(self.words(*arguments, **values))
         return code or 0, out.getvalue(), err.getvalue()
 
-    def start(self, *arguments, **values):
-        """The same as a process of its own."""
+    def start(self, *arguments, before=(), **values):
+        """The same as a process of its own; `before` are the words of a program that starts it."""
         environment = {**os.environ, "SOFTGRAIN_PROGRAM": str(self.program)}
-        return subprocess.Popen([sys.executable, PROGRAM, *self.words(*arguments, **values)], env=environment,
+        return subprocess.Popen([*before, sys.executable, PROGRAM, *self.words(*arguments, **values)], env=environment,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def results(self):
@@ -170,12 +170,15 @@ class Sweeps(Temporary):
         self.assertEqual(self.sweep("--index=6")[0], 2)
 
     def test_a_signal_stops_the_runs_and_the_sweep_asks_to_come_again(self):
-        process = self.start("--jobs=1", frictions="9,0", seeds="1")
+        process = self.start("--jobs=1", frictions="9,0", seeds="1", before=["nohup"])
         waiting = self.out / "runs/friction_9-seed_1/run.json"
         for _ in range(1000):
             if waiting.exists():
                 break
             time.sleep(0.01)
+        process.send_signal(signal.SIGHUP)  # ignored: started by nohup
+        time.sleep(0.2)
+        self.assertIsNone(process.poll())
         process.send_signal(signal.SIGTERM)
         process.communicate(timeout=30)
         self.assertEqual(process.returncode, 75)

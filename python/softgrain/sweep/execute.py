@@ -63,7 +63,9 @@ class Pool:
     def carry_out(self, runs):
         """Returns {name of a failed run: (exit code, what it said)}. `stop_code` is set if a signal came."""
         waiting, failed = list(runs), {}
-        before = {number: signal.signal(number, self._pass_on) for number in (*STOP_SIGNALS, signal.SIGUSR1)}
+        # What is ignored stays so: SIGHUP under nohup.
+        heeded = [number for number in (*STOP_SIGNALS, signal.SIGUSR1) if signal.getsignal(number) != signal.SIG_IGN]
+        before = {number: signal.signal(number, self._pass_on) for number in heeded}
         try:
             while self.running or (waiting and not self.stop_code):
                 while waiting and len(self.running) < self.jobs and not self.stop_code:
