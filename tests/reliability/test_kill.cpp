@@ -74,3 +74,12 @@ TEST_CASE("a torn last line of the series is repaired on resume") {
     CHECK(workshop.series("whole").ends_with(end.substr(end.find('\n'))));
   }
 }
+
+TEST_CASE("a run killed before its first file was whole can be begun again") {
+  const Workshop workshop;
+  std::filesystem::create_directory(workshop.path("out"));
+  workshop.file("out/.lock", "1\n");
+  workshop.file("out/run.json.tmp", "{\"for");
+  const TinyCase tiny{"early", "diametral-mpm", tiny_settings("diametral-mpm")};
+  CHECK(run_tiny(workshop, tiny, "out", {"--resume"}).exit_code == 0);
+}

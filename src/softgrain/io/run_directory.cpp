@@ -47,8 +47,11 @@ void refuse_if_in_use(const RunPaths& paths, bool in_use, int process) {
 
 void refuse_if_not_empty(const RunPaths& paths) {
   const auto files = entries(paths.root);
-  const bool empty = std::all_of(files.begin(), files.end(),
-                                 [&](const fs::path& file) { return file == paths.lock_file(); });
+  const fs::path begun =
+      paths.run_file().string() + ".tmp";  // all that a run killed at its very start leaves
+  const bool empty = std::all_of(files.begin(), files.end(), [&](const fs::path& file) {
+    return file == paths.lock_file() || file == begun;
+  });
   require(empty, "{} is not empty; --resume goes on with the run in it, --force begins it anew",
           paths.root.string());
 }
