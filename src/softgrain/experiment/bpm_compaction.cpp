@@ -7,7 +7,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/arrays.hpp"
-#include "softgrain/experiment/compaction_path.hpp"
+#include "softgrain/experiment/isotropic_path.hpp"
 #include "softgrain/experiment/packing_row.hpp"
 #include "softgrain/observe/outlines.hpp"
 
@@ -22,9 +22,6 @@ constexpr double close_packing_fraction = 0.82;
 
 /// Beyond this mean overlap the contact problem is not solved at all.
 constexpr double largest_overlap = 0.05;
-
-/// Strain over which the stress is averaged that ends a run.
-constexpr double averaging_strain = 1e-3;
 
 /// sigma_I = F0/<a0> is the same in every grain.
 std::vector<Attraction> laws_of(const Case& c, const BpmSample& sample) {
@@ -58,9 +55,8 @@ BpmCompaction::BpmCompaction(const Case& c, BoxSample box)
     : BpmCompaction(c, box, fill_box(box, prepare_library(c), c)) {}
 
 BpmCompaction::BpmCompaction(const Case& c, BoxSample box, BpmSample sample)
-    : BpmSimulation(
-          c, std::make_unique<CompactionPath>(c.loading, box.side, c.time.step, c.sample.packing_fraction),
-          laws_of(c, sample), sample.particles, friction_rule(c, sample.particles.grain), skin_of(sample)),
+    : BpmSimulation(c, box_path(c, box.side, c.time.step), laws_of(c, sample), sample.particles,
+                    friction_rule(c, sample.particles.grain), skin_of(sample)),
       box_(std::move(box)),
       begin_(std::move(sample.begin)),
       displaced_(sample.displaced) {}
@@ -68,11 +64,9 @@ BpmCompaction::BpmCompaction(const Case& c, BoxSample box, BpmSample sample)
 void BpmCompaction::judge(const StepReport& report) {
   const double dt = case_.time.step;
   const double stress = (wall_impulse_[bottom_wall] + wall_impulse_[top_wall]) / (2 * dt * width());
-  const double strain = case_.loading.wall_velocity * dt / plate_distance();
-  sums_.stress += std::min(1.0, strain / averaging_strain) * (stress - sums_.stress);
-  if (case_.loading.max_stress > 0 && sums_.stress >= case_.loading.max_stress) sums_.ended = true;
+  drive_.watch(stress, plate_distance(), step_);
   if (report.overlap_mean > close_packing_overlap && solid_fraction() > close_packing_fraction)
-    sums_.ended = true;
+    drive_.state.ended = true;
   else if (report.overlap_mean > largest_overlap)
     throw NumericalError(
         fmt::format("step {}: primaries overlap by {:.2g} of their radius in the mean, far from their close "
@@ -81,14 +75,17 @@ void BpmCompaction::judge(const StepReport& report) {
 }
 
 std::string BpmCompaction::early_end() const {
-  if (!sums_.ended) return "";
-  if (case_.loading.max_stress > 0 && sums_.stress >= case_.loading.max_stress)
-    return "loading.max_stress is reached";
+  if (const std::string end = drive_.early_end(step_); !end.empty() || !drive_.state.ended) return end;
   return fmt::format(
       "the rigid primaries fill {:.3f} of the box, their random close packing, and overlap by more than {} "
       "of "
       "their radius in the mean: no smaller box holds them",
       solid_fraction(), close_packing_overlap);
+}
+
+double BpmCompaction::width() const {
+  const auto& walls = dynamics_.particles.walls;
+  return walls[right_wall].point[0] - walls[left_wall].point[0];
 }
 
 double BpmCompaction::solid_fraction() const {
@@ -166,6 +163,7 @@ std::vector<Quantity> BpmCompaction::observe() {
       {"sigma_I", "Pa", case_.bpm.cohesive_pressure},
       {"solid_fraction", "", solid_fraction()},
   };
+  const auto velocity_of = [&](int wall) { return particles.velocity[particles.wall_body(wall)][1]; };
   std::vector<double> radius;
   for (const PlacedGrain& grain : box_.grains) radius.push_back(grain.radius);
   const std::vector<Vec<2>> centre = centres();
@@ -183,7 +181,7 @@ std::vector<Quantity> BpmCompaction::observe() {
                    .mass = particles.mass,
                    .velocity = std::span(particles.velocity).first(particles.position.size()),
                    .density = case_.grain.density,
-                   .strain_rate = path_->plate_velocity(std::max<std::int64_t>(step_ - 1, 0)) / height});
+                   .strain_rate = (velocity_of(top_wall) - velocity_of(bottom_wall)) / height});
   own.insert(own.end(), packing.begin(), packing.end());
   std::vector<Quantity> row = row_of(std::move(own));
   start_new_row();

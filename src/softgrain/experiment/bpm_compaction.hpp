@@ -9,10 +9,11 @@
 
 namespace softgrain {
 
-/// A box of bonded-particle grains whose lid comes down: the paper's Figs. 2-4. The other walls rest; no
-/// gravity. Attraction and inner friction act within a grain, contact.friction between grains. The run ends
-/// with the path, at a stress, or where the primaries are packed so densely that no smaller box holds them:
-/// rigid disks have no solution past their own random close packing, and a growing overlap says so.
+/// A box of bonded-particle grains whose lid comes down, the other walls at rest: the paper's Figs. 2-4; or
+/// whose walls all come in. No gravity. Attraction and inner friction act within a grain, contact.friction
+/// between grains. The run ends with the path, at a stress, or where the primaries are packed so densely that
+/// no smaller box holds them: rigid disks have no solution past their own random close packing, and a growing
+/// overlap says so.
 class BpmCompaction final : public BpmSimulation {
  public:
   explicit BpmCompaction(const Case& the_case);
@@ -34,7 +35,7 @@ class BpmCompaction final : public BpmSimulation {
   void judge(const StepReport& report) override;
   void complete_scene(Scene& scene) const override;
   double grain_area(int grain) const override;
-  double width() const { return box_.side; }
+  double width() const;
   double solid_fraction() const;  ///< area of the primaries over that of the box
 
   /// Outlines of all grains; `begin` as PackingView::outline_begin.

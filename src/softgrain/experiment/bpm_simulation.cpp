@@ -41,7 +41,7 @@ BpmSimulation::BpmSimulation(const Case& the_case, std::unique_ptr<PlatePath> pa
                              std::vector<Attraction> laws, RigidParticles<2> particles, FrictionRule friction,
                              double skin)
     : case_(the_case),
-      path_(std::move(path)),
+      drive_(the_case.loading, std::move(path), the_case.time.step),
       attraction_(std::move(laws)),
       dynamics_(std::move(particles), std::move(friction), rigid_step_options(the_case), skin) {
   height_start_ = plate_distance();
@@ -58,7 +58,8 @@ double BpmSimulation::plate_distance() const {
 
 StepReport BpmSimulation::step() {
   const double dt = case_.time.step;
-  set_wall_velocity(dynamics_.particles, top_wall, {0, path_->plate_velocity(step_)});
+  for (int w = 0; w < static_cast<int>(dynamics_.particles.walls.size()); ++w)
+    set_wall_velocity(dynamics_.particles, w, drive_.velocity(dynamics_.particles.walls[w], w, step_));
   dynamics_.options.solver.max_sweeps = case_.solver.max_sweeps * (step_ == 0 ? first_step_factor : 1);
   const StepReport report = dynamics_.step(
       [&](const RigidParticles<2>& particles, std::span<Vec<2>> force) {
@@ -117,8 +118,8 @@ std::vector<Quantity> BpmSimulation::row_of(std::vector<Quantity> own) const {
   std::vector<Quantity> row{
       {"step", "", static_cast<double>(step_)},
       {"time", "s", time()},
-      {"strain", "", path_->strain(height_start_, plate_distance())},
-      {"leg", "", static_cast<double>(path_->leg(std::max<std::int64_t>(step_ - 1, 0)))},
+      {"strain", "", drive_.strain(height_start_, plate_distance())},
+      {"leg", "", static_cast<double>(drive_.leg(std::max<std::int64_t>(step_ - 1, 0)))},
       {"wall_height", "m", plate_distance()},
   };
   row.insert(row.end(), own.begin(), own.end());
@@ -209,8 +210,9 @@ Checkpoint BpmSimulation::checkpoint() const {
   state.arrays["wall_point"] = to_array<2>(wall_point);
   std::vector<double> sums(sums_.impulse.begin(), sums_.impulse.end());
   sums.insert(sums.end(), {sums_.duration, sums_.wall_work, sums_.dissipation, sums_.energy_start,
-                           sums_.stress, sums_.ended ? 1.0 : 0.0});
+                           drive_.state.stress, drive_.state.ended ? 1.0 : 0.0});
   state.arrays["sums"] = {1, std::move(sums)};
+  drive_.save_hold(state);
   return state;
 }
 
@@ -237,8 +239,9 @@ void BpmSimulation::restore(const Checkpoint& state) {
   sums_.wall_work = sums[5][0];
   sums_.dissipation = sums[6][0];
   sums_.energy_start = sums[7][0];
-  sums_.stress = sums[8][0];
-  sums_.ended = sums[9][0] != 0;
+  drive_.state.stress = sums[8][0];
+  drive_.state.ended = sums[9][0] != 0;
+  drive_.restore_hold(state);
   step_ = state.step;
 }
 

@@ -6,8 +6,8 @@
 
 #include "softgrain/bpm/attraction_forces.hpp"
 #include "softgrain/experiment/case.hpp"
-#include "softgrain/experiment/plate_path.hpp"
 #include "softgrain/experiment/simulation.hpp"
+#include "softgrain/experiment/wall_drive.hpp"
 #include "softgrain/observe/energy.hpp"
 #include "softgrain/rigid/step.hpp"
 
@@ -19,18 +19,16 @@ RigidStepOptions rigid_step_options(const Case& the_case);
 /// Walls of an experiment: bottom and top, then left and right of a box.
 enum BoxWall : int { bottom_wall, top_wall, left_wall, right_wall };
 
-/// Grains of bonded primary particles whose top wall follows a path: what the test of one grain and the
+/// Grains of bonded primary particles between walls that follow a path: what the test of one grain and the
 /// compaction of many have in common.
 class BpmSimulation : public Simulation {
  public:
-  bool finished() const override { return sums_.ended || step_ >= path_->steps(); }
-  double progress() const override {
-    return finished() ? 1 : static_cast<double>(step_) / static_cast<double>(path_->steps());
-  }
+  bool finished() const override { return drive_.finished(step_); }
+  double progress() const override { return drive_.progress(step_); }
   double time() const override { return static_cast<double>(step_) * case_.time.step; }
   std::int64_t steps_done() const override { return step_; }
-  std::int64_t steps_planned() const override { return path_->steps(); }
-  bool at_turning_point() const override { return step_ > 0 && path_->leg(step_) != path_->leg(step_ - 1); }
+  std::int64_t steps_planned() const override { return drive_.steps_planned(); }
+  bool at_turning_point() const override { return drive_.at_turning_point(step_); }
   StepReport step() override;
   Scene scene() const override;
   Checkpoint checkpoint() const override;
@@ -50,11 +48,9 @@ class BpmSimulation : public Simulation {
     double duration = 0;                    ///< since the last row [s]
     double wall_work = 0, dissipation = 0;  ///< over the run [J/m]
     double energy_start = 0;                ///< kinetic + attraction before the first step [J/m]
-    double stress = 0;                      ///< vertical, the mean that an experiment may watch [Pa]
-    bool ended = false;                     ///< before the end of the path
   };
 
-  /// Looks at the step that was just made: may raise NumericalError, or end the run by `sums_.ended`.
+  /// Looks at the step that was just made: may raise NumericalError, or end the run by `drive_.state`.
   virtual void judge(const StepReport& report) = 0;
   /// Draws the walls, and what else the experiment shows.
   virtual void complete_scene(Scene& scene) const = 0;
@@ -72,7 +68,7 @@ class BpmSimulation : public Simulation {
   void start_new_row();
 
   Case case_;
-  std::unique_ptr<PlatePath> path_;
+  WallDrive drive_;
   AttractionForces attraction_;
   RigidDynamics<2> dynamics_;
   double height_start_ = 0;  ///< [m]

@@ -59,13 +59,14 @@ struct Case {
   } solver;
 
   struct Loading {
-    double wall_velocity = 0.2;       ///< of the top plate [m/s]
+    double wall_velocity = 0.2;       ///< of the top plate; of opposite walls towards each other [m/s]
     double max_strain = 0.35;         ///< strain at the end of loading
-    double max_packing_fraction = 0;  ///< Phi_0 at the end of a compaction; 0: as max_strain says
-    double max_stress = 0;            ///< sigma at the end of a compaction [Pa]; 0: any
+    double max_packing_fraction = 0;  ///< Phi_0 at the end, of grains in a box; 0: as max_strain says
+    double max_stress = 0;            ///< sigma at the end, of grains in a box [Pa]; 0: any
     std::vector<double> unload_at{};  ///< strains at which the plate turns back
     double unload_by = 0.015;         ///< strain given back before loading again
     double hold = 0;                  ///< rest of the plate at each turn and at the end [s]
+    double hold_stress = 0;           ///< sigma that the lid keeps for `hold` before the end [Pa]; 0: none
   } loading;
 
   struct Time {

@@ -9,12 +9,12 @@ namespace softgrain {
 
 std::unique_ptr<Simulation> create_simulation(const Case& the_case) {
   const auto& [loading, model] = the_case.experiment;
-  require(loading == "diametral" || loading == "compaction",
-          "experiment.loading must be 'diametral' or 'compaction', got '{}'", loading);
+  require(loading == "diametral" || loading == "compaction" || loading == "isotropic",
+          "experiment.loading must be 'diametral', 'compaction' or 'isotropic', got '{}'", loading);
   if (model == "mpm") return create_mpm_simulation(the_case);
   require(model == "bpm", "experiment.model must be 'bpm' or 'mpm', got '{}'", model);
-  if (loading == "compaction") return std::make_unique<BpmCompaction>(the_case);
-  return std::make_unique<BpmCompression>(the_case);
+  if (loading == "diametral") return std::make_unique<BpmCompression>(the_case);
+  return std::make_unique<BpmCompaction>(the_case);
 }
 
 }  // namespace softgrain

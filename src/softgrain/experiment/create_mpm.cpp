@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/experiment/compaction_path.hpp"
 #include "softgrain/experiment/diametral_path.hpp"
+#include "softgrain/experiment/isotropic_path.hpp"
 #include "softgrain/experiment/mpm_simulation.hpp"
 #include "softgrain/experiment/sample.hpp"
 #include "softgrain/experiment/updated_lagrangian_simulation.hpp"
@@ -16,7 +16,7 @@ enum WallIndex : int { bottom, top };
 /// From this Poisson's ratio on, cells take their volume change in the mean, against locking.
 constexpr double locking_poisson_ratio = 0.49;
 
-/// What both integrators need: grains, walls, and how the lid moves.
+/// What both integrators need: grains and walls.
 struct MpmSetup {
   std::vector<GrainPlacement> grains;
   std::vector<Wall<2>> walls;
@@ -49,11 +49,10 @@ MpmSetup setup_of(const Case& c) {
   return setup;
 }
 
-std::unique_ptr<PlatePath> path_of(const Case& c, const std::vector<Wall<2>>& walls, double dt) {
+WallDrive drive_of(const Case& c, const std::vector<Wall<2>>& walls, double dt) {
   if (c.experiment.loading == "diametral")
-    return std::make_unique<DiametralPath>(c.loading, c.grain.radius, dt);
-  return std::make_unique<CompactionPath>(c.loading, walls[top].point[1] - walls[bottom].point[1], dt,
-                                          c.sample.packing_fraction);
+    return {c.loading, std::make_unique<DiametralPath>(c.loading, c.grain.radius, dt), dt};
+  return {c.loading, box_path(c, walls[top].point[1] - walls[bottom].point[1], dt), dt};
 }
 
 }  // namespace
@@ -71,20 +70,18 @@ std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
     ImplicitOptions options{.tolerance = c.mpm.tolerance,
                             .friction = c.contact.friction,
                             .wall_friction = c.contact.wall_friction};
-    auto path = path_of(c, setup.walls, dt);
+    WallDrive drive = drive_of(c, setup.walls, dt);
     return std::make_unique<MpmSimulation<ImplicitDynamics>>(
-        ImplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(path), dt,
-        c.loading.max_stress);
+        ImplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(drive), dt);
   }
   require(c.mpm.integrator == "explicit", "mpm.integrator must be 'implicit' or 'explicit', got '{}'",
           c.mpm.integrator);
   const double dt = c.mpm.time_step > 0 ? c.mpm.time_step : stable_time_step(grains);
   ExplicitOptions options{
       .damping_time = 0.5 * dt, .friction = c.contact.friction, .wall_friction = c.contact.wall_friction};
-  auto path = path_of(c, setup.walls, dt);
+  WallDrive drive = drive_of(c, setup.walls, dt);
   return std::make_unique<MpmSimulation<ExplicitDynamics>>(
-      ExplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(path), dt,
-      c.loading.max_stress);
+      ExplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(drive), dt);
 }
 
 }  // namespace softgrain

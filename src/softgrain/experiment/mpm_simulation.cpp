@@ -16,19 +16,11 @@ namespace {
 
 enum WallIndex : int { bottom, top, left, right };
 
-/// Strain over which the stress is averaged that ends a run.
-constexpr double averaging_strain = 1e-3;
-
 }  // namespace
 
 template <class Dynamics>
-MpmSimulation<Dynamics>::MpmSimulation(Dynamics dynamics, std::unique_ptr<PlatePath> path, double dt,
-                                       double max_stress)
-    : dynamics_(std::move(dynamics)),
-      path_(std::move(path)),
-      dt_(dt),
-      max_stress_(max_stress),
-      height_start_(plate_distance()) {}
+MpmSimulation<Dynamics>::MpmSimulation(Dynamics dynamics, WallDrive drive, double dt)
+    : dynamics_(std::move(dynamics)), drive_(std::move(drive)), dt_(dt), height_start_(plate_distance()) {}
 
 template <class Dynamics>
 double MpmSimulation<Dynamics>::plate_distance() const {
@@ -36,8 +28,14 @@ double MpmSimulation<Dynamics>::plate_distance() const {
 }
 
 template <class Dynamics>
+double MpmSimulation<Dynamics>::box_width() const {
+  return dynamics_.walls[right].point[0] - dynamics_.walls[left].point[0];
+}
+
+template <class Dynamics>
 StepReport MpmSimulation<Dynamics>::step() {
-  dynamics_.walls[top].velocity = {0, path_->plate_velocity(step_)};
+  for (int w = 0; w < static_cast<int>(dynamics_.walls.size()); ++w)
+    dynamics_.walls[w].velocity = drive_.velocity(dynamics_.walls[w], w, step_);
   const SoftStepReport soft = dynamics_.step(dt_);
   ++step_;
   for (std::size_t w = 0; w < dynamics_.walls.size(); ++w)
@@ -45,7 +43,10 @@ StepReport MpmSimulation<Dynamics>::step() {
   sums_.duration += dt_;
   sums_.iterations += soft.iterations;
   sums_.rejected += soft.rejected;
-  if (box()) judge();
+  if (box()) {
+    const double force = dynamics_.wall_impulse(top)[1] - dynamics_.wall_impulse(bottom)[1];
+    drive_.watch(force / (2 * dt_ * box_width()), plate_distance(), step_);
+  }
   return {.contacts = soft.contacts,
           .sweeps = soft.sweeps,
           .residual_mean = soft.residual,
@@ -53,16 +54,6 @@ StepReport MpmSimulation<Dynamics>::step() {
           .overlap_mean = 0,
           .overlap_max = soft.penetration_max,
           .converged = soft.converged};
-}
-
-/// Ends the run at the largest stress asked for.
-template <class Dynamics>
-void MpmSimulation<Dynamics>::judge() {
-  const double width = dynamics_.walls[right].point[0] - dynamics_.walls[left].point[0];
-  const double force = dynamics_.wall_impulse(top)[1] - dynamics_.wall_impulse(bottom)[1];
-  const double strain = std::abs(dynamics_.walls[top].velocity[1]) * dt_ / plate_distance();
-  sums_.stress += std::min(1.0, strain / averaging_strain) * (force / (2 * dt_ * width) - sums_.stress);
-  sums_.ended = max_stress_ > 0 && sums_.stress >= max_stress_;
 }
 
 /// Outward force on a wall [N/m], mean since the last row.
@@ -117,16 +108,15 @@ std::vector<Quantity> MpmSimulation<Dynamics>::observe() {
     start_area += grains.mass(g) / grains.density;
     for (const PointState& point : point_states(grains, g)) least_J = std::min(least_J, determinant(point.F));
   }
-  const double width =
-      box() ? dynamics_.walls[right].point[0] - dynamics_.walls[left].point[0] : x_largest - x_least;
+  const double width = box() ? box_width() : x_largest - x_least;
   const double height = plate_distance();
   const auto contacts =
       std::ranges::count_if(dynamics_.impulse, [](const Vec<2>& impulse) { return impulse[0] > 0; });
   std::vector<Quantity> row{
       {"step", "", static_cast<double>(step_)},
       {"time", "s", time()},
-      {"strain", "", path_->strain(height_start_, height)},
-      {"leg", "", static_cast<double>(path_->leg(std::max<std::int64_t>(step_ - 1, 0)))},
+      {"strain", "", drive_.strain(height_start_, height)},
+      {"leg", "", static_cast<double>(drive_.leg(std::max<std::int64_t>(step_ - 1, 0)))},
       {"wall_height", "m", height},
       {"width", "m", width},
       {"stress_bottom", "Pa", wall_force(bottom) / width},
@@ -139,7 +129,8 @@ std::vector<Quantity> MpmSimulation<Dynamics>::observe() {
   };
   if (box()) {
     row.push_back({"stress_side", "Pa", (wall_force(left) + wall_force(right)) / 2 / height});
-    append(soft_packing_row(view(), dynamics_.walls[top].velocity[1] / height));
+    const double approach = dynamics_.walls[top].velocity[1] - dynamics_.walls[bottom].velocity[1];
+    append(soft_packing_row(view(), approach / height));
   } else {
     row.push_back({"area_ratio", "", total_area(outline, outline_begins(grains)) / start_area});
   }
@@ -181,10 +172,11 @@ Checkpoint MpmSimulation<Dynamics>::checkpoint() const {
   state.arrays["wall_point"] = to_array<2>(wall_point);
   const WorkBudget& work = dynamics_.work;
   std::vector<double> sums(sums_.impulse.begin(), sums_.impulse.end());
-  sums.insert(sums.end(),
-              {sums_.duration, sums_.iterations, sums_.rejected, sums_.stress, sums_.ended ? 1.0 : 0.0,
-               dynamics_.impulse_time, work.walls, work.gravity, work.internal, work.contacts, work.inertia});
+  sums.insert(sums.end(), {sums_.duration, sums_.iterations, sums_.rejected, drive_.state.stress,
+                           drive_.state.ended ? 1.0 : 0.0, dynamics_.impulse_time, work.walls, work.gravity,
+                           work.internal, work.contacts, work.inertia});
   state.arrays["sums"] = {1, std::move(sums)};
+  drive_.save_hold(state);
   return state;
 }
 
@@ -233,8 +225,9 @@ void MpmSimulation<Dynamics>::restore(const Checkpoint& state) {
   sums_.duration = sums[4][0];
   sums_.iterations = sums[5][0];
   sums_.rejected = sums[6][0];
-  sums_.stress = sums[7][0];
-  sums_.ended = sums[8][0] != 0;
+  drive_.state.stress = sums[7][0];
+  drive_.state.ended = sums[8][0] != 0;
+  drive_.restore_hold(state);
   dynamics_.impulse_time = sums[9][0];
   dynamics_.work = {.walls = sums[10][0],
                     .gravity = sums[11][0],

@@ -1,15 +1,18 @@
 #pragma once
+#include <array>
 #include <cstdint>
 
 namespace softgrain {
 
-/// How the top plate moves, step by step, and what its travel means as a strain.
+/// How the plates approach each other, step by step, and what their travel means as a strain.
 class PlatePath {
  public:
   virtual ~PlatePath() = default;
   virtual std::int64_t steps() const = 0;
-  /// Velocity of the top plate during step k [m/s]: negative while loading.
+  /// Rate of the distance of the plates during step k [m/s]: negative while loading.
   virtual double plate_velocity(std::int64_t step) const = 0;
+  /// Share of it that each wall makes along its normal: bottom, top, left, right.
+  virtual std::array<double, 4> shares() const { return {0, 1, 0, 0}; }
   /// Number of the leg of step k: 0 loading, 1 unloading, 2 reloading, ...; a rest is a leg of its own.
   virtual int leg(std::int64_t step) const = 0;
   /// Strain for the distance of the plates at the start and now [m].

@@ -32,9 +32,9 @@ std::vector<std::string> law_names() {
 
 std::vector<Key> all_keys() {
   return {
-      KEY(experiment.loading, "", one_of({"diametral", "compaction"}),
+      KEY(experiment.loading, "", one_of({"diametral", "compaction", "isotropic"}),
           "the loading path; diametral: one grain between two plates, the top one moves; compaction: grains in a box "
-          "whose lid comes down"),
+          "whose lid comes down; isotropic: the same, all four walls come in"),
       KEY(experiment.model, "", one_of({"bpm", "mpm"}),
           "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other; mpm: an "
           "elastic body by the material point method"),
@@ -87,17 +87,20 @@ std::vector<Key> all_keys() {
           "converged: mean penetration gained in a step over the mean primary diameter is below this"),
       KEY(solver.relaxation, "", between(0, 2), "over-relaxation omega of a sweep; 1 is plain Gauss-Seidel"),
 
-      KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top plate"),
+      KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top plate; isotropic: of opposite walls towards each other, half by each"),
       KEY(loading.max_strain, "", between(0, 3),
-          "strain at the end: eps = -ln(1 - d/R), d half the travel of the plate; compaction: eps = ln(h_start/h)"),
+          "strain at the end: eps = -ln(1 - d/R), d half the travel of the plate; in a box: eps = ln(h_start/h)"),
       KEY(loading.max_packing_fraction, "", from_to(0, 2),
-          "packing fraction Phi_0 of the undeformed grains at the end, if max_strain comes later; 0: none (compaction)"),
+          "packing fraction Phi_0 of the undeformed grains at the end, if max_strain comes later; 0: none (in a box)"),
       KEY(loading.max_stress, "MPa", at_least(0),
-          "vertical stress at the end, mean of lid and bottom over 0.1 % of strain; 0: none (compaction, bpm)"),
+          "vertical stress at the end, mean of lid and bottom over 0.1 % of strain; 0: none (in a box)"),
       KEY(loading.unload_at, "", positive(),
           "ascending strains at which the plate turns back once; [] for none"),
       KEY(loading.unload_by, "", positive(), "strain given back before loading again"),
       KEY(loading.hold, "us", at_least(0), "rest of the plate wherever it turns, and at the end"),
+      KEY(loading.hold_stress, "MPa", at_least(0),
+          "vertical stress at which the walls leave their path: they keep it for loading.hold, which ends the run; 0: none "
+          "(in a box)"),
 
       KEY(time.step, "us", positive(), "time step dt"),
 
@@ -182,6 +185,13 @@ std::string too_dense_from_the_start(const Case& c) {
                      last, c.sample.packing_fraction);
 }
 
+std::string cannot_hold_a_stress(const Case& c) {
+  if (c.loading.hold_stress == 0) return "";
+  if (c.experiment.loading == "diametral")
+    return "loading.hold_stress needs a box: experiment.loading \"compaction\" or \"isotropic\"";
+  return c.loading.hold > 0 ? "" : "loading.hold_stress needs loading.hold > 0: for how long";
+}
+
 std::string formulation_cannot(const Case& c) {
   const bool updated = c.mpm.formulation == "updated_lagrangian";
   if (c.experiment.model != "mpm") return "";
@@ -233,6 +243,7 @@ const std::vector<Relation>& case_relations() {
        too_many_steps},
       {{"mpm.formulation", "mpm.contact_on", "experiment.loading"}, formulation_cannot},
       {{"loading.max_packing_fraction", "sample.packing_fraction"}, too_dense_from_the_start},
+      {{"loading.hold_stress", "loading.hold", "experiment.loading"}, cannot_hold_a_stress},
   };
   return relations;
 }

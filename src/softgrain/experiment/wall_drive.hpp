@@ -1,0 +1,63 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "softgrain/experiment/case.hpp"
+#include "softgrain/experiment/plate_path.hpp"
+#include "softgrain/experiment/simulation.hpp"
+#include "softgrain/geometry/wall.hpp"
+
+namespace softgrain {
+
+/// Drives the walls of an experiment along a path. In a box it watches the vertical stress:
+/// loading.max_stress ends the run; from loading.hold_stress on the walls leave the path, keep that stress
+/// sigma_h by the speed v (sigma_h - sigma)/sigma_h, at most v = loading.wall_velocity, for loading.hold, and
+/// the run ends.
+class WallDrive {
+ public:
+  /// With the position of the walls all that a checkpoint needs.
+  struct State {
+    double stress = 0;             ///< sigma, vertical, the mean over 0.1 % of strain at the full speed [Pa]
+    bool ended = false;            ///< before the end of path and hold
+    std::int64_t hold_start = -1;  ///< first step of the hold; -1: none yet
+  };
+
+  /// Raises UsageError for a stress that is held for no time.
+  WallDrive(const Case::Loading& loading, std::unique_ptr<PlatePath> path, double dt);
+
+  /// Steps of the whole path; the hold of a stress ends before.
+  std::int64_t steps_planned() const { return path_->steps(); }
+  bool finished(std::int64_t step) const { return state.ended || step >= end(); }
+  double progress(std::int64_t step) const {
+    return finished(step) ? 1 : static_cast<double>(step) / static_cast<double>(end());
+  }
+  /// Number of the leg of a step; the hold of a stress is one.
+  int leg(std::int64_t step) const;
+  bool at_turning_point(std::int64_t step) const { return step > 0 && leg(step) != leg(step - 1); }
+  /// Velocity of a wall in the coming step [m/s].
+  Vec<2> velocity(const Wall<2>& wall, int index, std::int64_t step) const;
+  double strain(double height_start, double height) const { return path_->strain(height_start, height); }
+
+  /// Takes the vertical stress [Pa] in a box of this height [m] that was found in the last of `steps_done`.
+  void watch(double stress, double height, std::int64_t steps_done);
+  /// Why the run ends before its last planned step; "" if that has other reasons.
+  std::string early_end(std::int64_t step) const;
+  /// The start of a hold, to and from an array that a checkpoint has only then.
+  void save_hold(Checkpoint& checkpoint) const;
+  void restore_hold(const Checkpoint& checkpoint);
+
+  State state;
+
+ private:
+  bool holds() const { return state.hold_start >= 0; }
+  std::int64_t end() const { return holds() ? state.hold_start + hold_steps_ : path_->steps(); }
+  double plate_velocity(std::int64_t step) const;
+
+  Case::Loading loading_;
+  std::unique_ptr<PlatePath> path_;
+  double dt_ = 0;
+  std::int64_t hold_steps_ = 0;
+};
+
+}  // namespace softgrain
