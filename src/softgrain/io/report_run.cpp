@@ -50,9 +50,9 @@ class Frames {
             paths.root.string(), paths.root.string());
     for (std::size_t k = 0; k < files.size(); ++k) {
       if (k % every_ != 0 && k + 1 < files.size()) continue;
-      if (read(files[k].path) && frames_.size() == 1)
-        choose_thinning(static_cast<double>(files.size()), limits);
-      if (!frames_.empty()) merge_particles(frames_.back(), merged_);
+      if (!read(files[k].path)) continue;
+      if (frames_.size() == 1) choose_thinning(static_cast<double>(files.size()), limits);
+      merge_particles(frames_.back(), merged_);
     }
     require(!frames_.empty(), "{}: none of {} snapshots can be shown; `softgrain verify {}` says why",
             paths.root.string(), files.size(), paths.root.string());
