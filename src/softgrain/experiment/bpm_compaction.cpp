@@ -75,7 +75,7 @@ void BpmCompaction::judge(const StepReport& report) {
 }
 
 std::string BpmCompaction::early_end() const {
-  if (const std::string end = drive_.early_end(step_); !end.empty() || !drive_.state.ended) return end;
+  if (std::string end = drive_.early_end(step_); !end.empty() || !drive_.state.ended) return end;
   return fmt::format(
       "the rigid primaries fill {:.3f} of the box, their random close packing, and overlap by more than {} "
       "of "
