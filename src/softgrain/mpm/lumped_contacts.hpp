@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <span>
 #include <vector>
 
@@ -26,12 +27,13 @@ class LumpedContacts {
   void apply_impulse(int contact, const Vec<2>& dp);
 
  private:
-  Vec<2> velocity_between(const OutlineContact& contact) const;
+  Vec<2> velocity_between(int contact) const;
 
   std::span<const OutlineContact> contacts_;
   std::span<const Wall<2>> walls_;
   std::span<Vec<2>> velocity_;
   std::span<const double> inverse_mass_;
+  std::vector<std::array<double, 4>> weight_;
   std::vector<double> delassus_, offset_;
 };
 
