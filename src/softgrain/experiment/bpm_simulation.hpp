@@ -16,9 +16,6 @@ namespace softgrain {
 /// The step, solver and contact law that a case asks for.
 RigidStepOptions rigid_step_options(const Case& the_case);
 
-/// Walls of an experiment: bottom and top, then left and right of a box.
-enum BoxWall : int { bottom_wall, top_wall, left_wall, right_wall };
-
 /// Grains of bonded primary particles between walls that follow a path: what the test of one grain and the
 /// compaction of many have in common.
 class BpmSimulation : public Simulation {

@@ -11,8 +11,6 @@
 namespace softgrain {
 namespace {
 
-enum WallIndex : int { bottom, top };
-
 /// From this Poisson's ratio on, cells take their volume change in the mean, against locking.
 constexpr double locking_poisson_ratio = 0.49;
 
@@ -52,7 +50,7 @@ MpmSetup setup_of(const Case& c) {
 WallDrive drive_of(const Case& c, const std::vector<Wall<2>>& walls, double dt) {
   if (c.experiment.loading == "diametral")
     return {c.loading, std::make_unique<DiametralPath>(c.loading, c.grain.radius, dt), dt};
-  return {c.loading, box_path(c, walls[top].point[1] - walls[bottom].point[1], dt), dt};
+  return {c.loading, box_path(c, walls[top_wall].point[1] - walls[bottom_wall].point[1], dt), dt};
 }
 
 }  // namespace

@@ -12,11 +12,6 @@
 #include "softgrain/observe/outlines.hpp"
 
 namespace softgrain {
-namespace {
-
-enum WallIndex : int { bottom, top, left, right };
-
-}  // namespace
 
 template <class Dynamics>
 MpmSimulation<Dynamics>::MpmSimulation(Dynamics dynamics, WallDrive drive, double dt)
@@ -24,12 +19,12 @@ MpmSimulation<Dynamics>::MpmSimulation(Dynamics dynamics, WallDrive drive, doubl
 
 template <class Dynamics>
 double MpmSimulation<Dynamics>::plate_distance() const {
-  return dynamics_.walls[top].point[1] - dynamics_.walls[bottom].point[1];
+  return dynamics_.walls[top_wall].point[1] - dynamics_.walls[bottom_wall].point[1];
 }
 
 template <class Dynamics>
 double MpmSimulation<Dynamics>::box_width() const {
-  return dynamics_.walls[right].point[0] - dynamics_.walls[left].point[0];
+  return dynamics_.walls[right_wall].point[0] - dynamics_.walls[left_wall].point[0];
 }
 
 template <class Dynamics>
@@ -44,7 +39,7 @@ StepReport MpmSimulation<Dynamics>::step() {
   sums_.iterations += soft.iterations;
   sums_.rejected += soft.rejected;
   if (box()) {
-    const double force = dynamics_.wall_impulse(top)[1] - dynamics_.wall_impulse(bottom)[1];
+    const double force = dynamics_.wall_impulse(top_wall)[1] - dynamics_.wall_impulse(bottom_wall)[1];
     drive_.watch(force / (2 * dt_ * box_width()), plate_distance(), step_);
   }
   return {.contacts = soft.contacts,
@@ -119,17 +114,17 @@ std::vector<Quantity> MpmSimulation<Dynamics>::observe() {
       {"leg", "", static_cast<double>(drive_.leg(std::max<std::int64_t>(step_ - 1, 0)))},
       {"wall_height", "m", height},
       {"width", "m", width},
-      {"stress_bottom", "Pa", wall_force(bottom) / width},
-      {"stress_top", "Pa", wall_force(top) / width},
-      {"force_bottom", "N/m", wall_force(bottom)},
-      {"force_top", "N/m", wall_force(top)},
+      {"stress_bottom", "Pa", wall_force(bottom_wall) / width},
+      {"stress_top", "Pa", wall_force(top_wall) / width},
+      {"force_bottom", "N/m", wall_force(bottom_wall)},
+      {"force_top", "N/m", wall_force(top_wall)},
   };
   const auto append = [&row](const std::vector<Quantity>& more) {
     row.insert(row.end(), more.begin(), more.end());
   };
   if (box()) {
-    row.push_back({"stress_side", "Pa", (wall_force(left) + wall_force(right)) / 2 / height});
-    const double approach = dynamics_.walls[top].velocity[1] - dynamics_.walls[bottom].velocity[1];
+    row.push_back({"stress_side", "Pa", (wall_force(left_wall) + wall_force(right_wall)) / 2 / height});
+    const double approach = dynamics_.walls[top_wall].velocity[1] - dynamics_.walls[bottom_wall].velocity[1];
     append(soft_packing_row(view(), approach / height));
   } else {
     row.push_back({"area_ratio", "", total_area(outline, outline_begins(grains)) / start_area});

@@ -4,6 +4,9 @@
 
 namespace softgrain {
 
+/// Walls of an experiment in the order of every list of them: bottom and top, then left and right of a box.
+enum BoxWall : int { bottom_wall, top_wall, left_wall, right_wall };
+
 /// How the plates approach each other, step by step, and what their travel means as a strain.
 class PlatePath {
  public:
@@ -11,7 +14,7 @@ class PlatePath {
   virtual std::int64_t steps() const = 0;
   /// Rate of the distance of the plates during step k [m/s]: negative while loading.
   virtual double plate_velocity(std::int64_t step) const = 0;
-  /// Share of it that each wall makes along its normal: bottom, top, left, right.
+  /// Share of it that each wall makes along its normal, by BoxWall.
   virtual std::array<double, 4> shares() const { return {0, 1, 0, 0}; }
   /// Number of the leg of step k: 0 loading, 1 unloading, 2 reloading, ...; a rest is a leg of its own.
   virtual int leg(std::int64_t step) const = 0;

@@ -7,16 +7,12 @@
 
 #include "softgrain/experiment/arrays.hpp"
 #include "softgrain/experiment/packing_row.hpp"
+#include "softgrain/experiment/plate_path.hpp"
 #include "softgrain/math/tensor.hpp"
 #include "softgrain/mpm/elastic_contacts.hpp"
 #include "softgrain/mpm/equilibrium.hpp"
 
 namespace softgrain {
-namespace {
-
-enum WallIndex : int { bottom, top, left, right };
-
-}  // namespace
 
 std::vector<int> outline_begins(const SoftGrains& grains) {
   std::vector<int> begin;
@@ -63,8 +59,8 @@ std::vector<Quantity> soft_packing_row(const SoftView& view, double strain_rate)
   grains.gather_outline(outline);
   const std::vector<int> begin = outline_begins(grains);
   const std::vector<ContactPoint> contacts = contact_points(view);
-  return packing_row({.width = view.walls[right].point[0] - view.walls[left].point[0],
-                      .height = view.walls[top].point[1] - view.walls[bottom].point[1],
+  return packing_row({.width = view.walls[right_wall].point[0] - view.walls[left_wall].point[0],
+                      .height = view.walls[top_wall].point[1] - view.walls[bottom_wall].point[1],
                       .radius = radius,
                       .centre = centre,
                       .outline = outline,
@@ -112,11 +108,11 @@ Scene soft_scene(const SoftView& view) {
   scene.outlines["force"] = to_array<2>(forces);
   scene.outlines["grain"] = {1, std::move(grain_of_vertex)};
   const auto& walls = view.walls;
-  const double low = walls[bottom].point[1], high = walls[top].point[1];
+  const double low = walls[bottom_wall].point[1], high = walls[top_wall].point[1];
   double begin = std::numeric_limits<double>::infinity(), end = -begin;
   for (const Vec<2>& x : outline) begin = std::min(begin, x[0]), end = std::max(end, x[0]);
   if (walls.size() > 2) {
-    begin = walls[left].point[0], end = walls[right].point[0];
+    begin = walls[left_wall].point[0], end = walls[right_wall].point[0];
     scene.wall_segments = {begin, low, begin, high, end, low, end, high};
   } else {
     const double margin = 0.1 * (end - begin);

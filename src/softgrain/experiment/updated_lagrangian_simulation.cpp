@@ -13,8 +13,6 @@
 namespace softgrain {
 namespace {
 
-enum WallIndex : int { bottom, top };
-
 ShapeFunction shape_of(const std::string& name) {
   if (name == "bilinear") return ShapeFunction::bilinear;
   if (name == "gimp") return ShapeFunction::gimp;
@@ -76,17 +74,17 @@ UpdatedLagrangianSimulation::UpdatedLagrangianSimulation(const Case& c)
       height_start_(plate_distance()) {}
 
 double UpdatedLagrangianSimulation::plate_distance() const {
-  return dynamics_.walls[top].point[1] - dynamics_.walls[bottom].point[1];
+  return dynamics_.walls[top_wall].point[1] - dynamics_.walls[bottom_wall].point[1];
 }
 
 StepReport UpdatedLagrangianSimulation::step() {
-  dynamics_.walls[top].velocity = {0, path_.plate_velocity(step_)};
+  dynamics_.walls[top_wall].velocity = {0, path_.plate_velocity(step_)};
   const SoftStepReport soft = dynamics_.step(dt_);
   ++step_;
-  sums_.force_bottom -= dynamics_.wall_impulse(bottom)[1];
-  sums_.force_top += dynamics_.wall_impulse(top)[1];
+  sums_.force_bottom -= dynamics_.wall_impulse(bottom_wall)[1];
+  sums_.force_top += dynamics_.wall_impulse(top_wall)[1];
   sums_.duration += dt_;
-  sums_.wall_work -= dot(dynamics_.wall_impulse(top), dynamics_.walls[top].velocity);
+  sums_.wall_work -= dot(dynamics_.wall_impulse(top_wall), dynamics_.walls[top_wall].velocity);
   return {.contacts = soft.contacts,
           .sweeps = soft.sweeps,
           .residual_mean = soft.residual,
@@ -155,7 +153,7 @@ Scene UpdatedLagrangianSimulation::scene() const {
   scene.outlines["grain"] = {1, std::vector<std::int64_t>(grain().outline.size(), 0)};
   const auto [left, right] = extent(grain());
   const double margin = 0.1 * (right - left);
-  for (const WallIndex w : {bottom, top}) {
+  for (const BoxWall w : {bottom_wall, top_wall}) {
     const double y = dynamics_.walls[w].point[1];
     scene.wall_segments.insert(scene.wall_segments.end(), {left - margin, y, right + margin, y});
   }
@@ -168,7 +166,7 @@ Checkpoint UpdatedLagrangianSimulation::checkpoint() const {
   state.arrays["velocity"] = to_array<2>(grain().velocity);
   state.arrays["deformation_gradient"] = to_array<4>(components(grain().F));
   state.arrays["outline"] = to_array<2>(grain().outline);
-  const std::vector<Vec<2>> points{dynamics_.walls[bottom].point, dynamics_.walls[top].point};
+  const std::vector<Vec<2>> points{dynamics_.walls[bottom_wall].point, dynamics_.walls[top_wall].point};
   state.arrays["wall_point"] = to_array<2>(points);
   state.arrays["sums"] = {
       1, std::vector<double>{sums_.force_bottom, sums_.force_top, sums_.duration, sums_.wall_work}};
@@ -187,7 +185,7 @@ void UpdatedLagrangianSimulation::restore(const Checkpoint& state) {
   from_array<2>(state, "wall_point", wall_point);
   from_array<1>(state, "sums", sums);
   for (std::size_t p = 0; p < F.size(); ++p) grain.F[p] = {F[p].c};
-  for (const WallIndex w : {bottom, top}) dynamics_.walls[w].point = wall_point[w];
+  for (const BoxWall w : {bottom_wall, top_wall}) dynamics_.walls[w].point = wall_point[w];
   sums_ = {sums[0][0], sums[1][0], sums[2][0], sums[3][0]};
   step_ = state.step;
 }
