@@ -1,8 +1,15 @@
 """What is read off the curves of a reproduction, against curves whose numbers are known beforehand."""
 
+import contextlib
+import io
 import json
+import os
+import signal
 import stat
+import subprocess
+import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -92,25 +99,74 @@ class Plans(unittest.TestCase):
                 self.assertEqual(len(sample), 1)
         self.assertEqual(len(plan.planned_runs(plan.FIGURES, plan.SCALES["paper"])), 7)
 
-    def test_a_run_is_not_made_again_unless_its_values_changed_and_a_failure_is_told(self):
-        with tempfile.TemporaryDirectory() as folder:
-            folder = Path(folder)
-            program = folder / "program"
-            program.write_text(
-                '#!/bin/sh\necho "$@" >> %s/calls\n'
-                'if [ $1 = run ]; then mkdir -p $4; echo \'{"state": "done"}\' > $4/run.json; fi\n'
-                'case "$*" in *fail*) echo broken >&2; exit 3;; esac\n' % folder)
-            program.chmod(program.stat().st_mode | stat.S_IEXEC)
-            good = plan.PlannedRun("good", "compaction-mpm", {"a.b": 1})
-            for run in (good, good, plan.PlannedRun("good", "compaction-mpm", {"a.b": 2})):
-                execute.execute([run], folder / "runs", str(program), 2)
-            calls = (folder / "calls").read_text().splitlines()
-            self.assertEqual(sum(call.startswith("run ") for call in calls), 2)
-            self.assertIn("--set=a.b=2", calls[-1])
-            with self.assertRaises(execute.RunFailed) as failure:
-                execute.execute([plan.PlannedRun("fail", "compaction-mpm", {})], folder / "runs", str(program), 1)
-            self.assertEqual(failure.exception.code, 3)
-            self.assertIn("broken", str(failure.exception))
+
+# Waits for a signal if friction = 9, as a program does that stops after its step; fails if it is 7.
+STAND_IN = """#!/bin/sh
+echo "$@" >> FOLDER/calls
+if [ $1 = new ]; then mkdir -p $2; touch $2/case.toml; exit; fi
+mkdir -p $4
+case "$*" in *friction=7*) echo broken >&2; exit 3;; esac
+echo '{"state": "running"}' > $4/run.json
+case "$*" in *friction=9*)
+  trap 'echo stopped > $4/stopped; exit 75' TERM
+  while :; do sleep 0.02; done;;
+esac
+echo '{"state": "done"}' > $4/run.json
+"""
+
+
+class Runs(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+        self.program = self.folder / "program"
+        self.program.write_text(STAND_IN.replace("FOLDER", str(self.folder)))
+        self.program.chmod(stat.S_IRWXU)
+
+    def execute(self, name, friction):
+        run = plan.PlannedRun(name, "compaction-mpm", {"contact.friction": friction})
+        with contextlib.redirect_stderr(io.StringIO()):
+            execute.execute([run], self.folder / "runs", str(self.program), 2)
+
+    def runs(self):
+        return [line for line in (self.folder / "calls").read_text().splitlines() if line.startswith("run ")]
+
+    def test_a_run_is_not_made_again_unless_its_values_changed(self):
+        for friction in (0, 0, 1, 1):
+            self.execute("one", friction)
+        self.assertEqual(len(self.runs()), 2)
+        self.assertIn("--force --set=contact.friction=1", self.runs()[-1])
+
+    def test_a_run_that_was_stopped_is_gone_on_with(self):
+        self.execute("one", 0)
+        (self.folder / "runs/one/run.json").write_text('{"state": "stopped"}')
+        self.execute("one", 0)
+        self.assertIn("--resume --set=contact.friction=0", self.runs()[-1])
+
+    def test_a_failure_is_told(self):
+        with self.assertRaises(execute.RunFailed) as failure:
+            self.execute("one", 7)
+        self.assertEqual((failure.exception.code, str(failure.exception)), (3, "one: broken"))
+
+    def test_a_signal_ends_the_runs_and_no_figure_is_drawn(self):
+        environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1])}
+        runs = ("from softgrain.reproduce import __main__ as main, plan\n"
+                "main.planned_runs = lambda *_: [plan.PlannedRun(name, 't', {'contact.friction': 9}) for name in 'abc']\n"
+                f"raise SystemExit(main.main(['-o', {str(self.folder)!r}, '-j2', '--program', {str(self.program)!r}]))")
+        process = subprocess.Popen([sys.executable, "-c", runs], env=environment, stderr=subprocess.PIPE, text=True)
+        folder = self.folder / "runs"
+        for _ in range(1000):
+            if (folder / "a/run.json").exists() and (folder / "b/run.json").exists():
+                break
+            time.sleep(0.01)
+        time.sleep(0.1)  # until the traps are set
+        process.send_signal(signal.SIGTERM)
+        _, said = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 75)
+        self.assertIn("the same command goes on", said)
+        self.assertEqual(sorted(path.parent.name for path in folder.glob("*/stopped")), ["a", "b"])
+        self.assertEqual(len(self.runs()), 2)  # c never began
 
 
 class Verdicts(unittest.TestCase):

@@ -3,49 +3,71 @@
 import json
 import subprocess
 import sys
-import time
-from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..sweep.execute import Pool, state
 
 
 class RunFailed(RuntimeError):
-    """A run ended with an error; `code` is its exit code."""
+    """A run ended with an error, or a signal came; `code` is the exit code."""
 
     def __init__(self, message, code):
         super().__init__(message)
         self.code = code
 
 
+@dataclass(frozen=True)
+class Workplace:
+    """Each run in FOLDER/NAME, its case and the values that it was begun with in FOLDER/cases/NAME."""
+
+    program: str
+    folder: Path
+
+    def is_done(self, run):
+        return self._was_begun(run) and state(self.folder / run.name) == "done"
+
+    def prepare(self, run):
+        """Writes the run's case, unless it is there."""
+        if not self._case(run).exists():
+            _call([self.program, "new", str(self._case(run).parent), "--template", run.template], run)
+
+    def run_command(self, run, *options):
+        """The words that begin the run, or go on with it if it was begun with the same values."""
+        begin = "--resume" if self._was_begun(run) and state(self.folder / run.name) else "--force"
+        if begin == "--force":
+            (self.folder / run.name / "run.json").unlink(missing_ok=True)  # of other values
+            self._note(run).write_text(json.dumps(run.values))
+        return [self.program, "run", str(self._case(run)), "-o", str(self.folder / run.name), begin,
+                *run.command_values, *options]
+
+    def _was_begun(self, run):
+        try:
+            return json.loads(self._note(run).read_text()) == run.values
+        except (OSError, ValueError):
+            return False
+
+    def _case(self, run):
+        return self.folder / "cases" / run.name / "case.toml"
+
+    def _note(self, run):
+        return self._case(run).with_name("values.json")
+
+
 def execute(runs, folder, program, jobs):
-    """Makes each run in folder/NAME. Raises RunFailed after the others have ended."""
-    folder.mkdir(parents=True, exist_ok=True)
-    with ThreadPoolExecutor(jobs) as pool:
-        results = [pool.submit(_execute_one, run, folder, program) for run in runs]
-    for result in results:
-        result.result()
-
-
-def _execute_one(run, folder, program):
-    directory = folder / run.name
-    if _is_done(directory, run):
-        print(f"{run.name}: done before", file=sys.stderr, flush=True)
-        return
-    case = folder / "cases" / run.name
-    if not (case / "case.toml").exists():
-        _call([program, "new", str(case), "--template", run.template], run)
-    start = time.monotonic()
-    _call([program, "run", str(case / "case.toml"), "-o", str(directory), "--force", "--quiet", *run.command_values],
-          run)
-    (directory / "plan.json").write_text(json.dumps(run.values))
-    print(f"{run.name}: {time.monotonic() - start:.0f} s", file=sys.stderr, flush=True)
-
-
-def _is_done(directory, run):
-    """Whether the directory holds this very run, ended: not one with other values."""
-    try:
-        state = json.loads((directory / "run.json").read_text())["state"]
-        return state == "done" and json.loads((directory / "plan.json").read_text()) == run.values
-    except (OSError, ValueError, KeyError):
-        return False
+    """Makes each run in folder/NAME. Raises RunFailed after the others have ended, or when a signal stopped them."""
+    place = Workplace(program, folder)
+    waiting = [run for run in runs if not place.is_done(run)]
+    if len(waiting) < len(runs):
+        print(f"{len(runs) - len(waiting)} of {len(runs)} runs: done before", file=sys.stderr)
+    for run in waiting:
+        place.prepare(run)
+    pool = Pool(place, jobs)
+    failed = pool.carry_out(waiting)
+    for name, (code, words) in failed.items():
+        raise RunFailed(f"{name}: {words}", code)
+    if pool.stop_code:
+        raise RunFailed("stopped; the same command goes on", pool.stop_code)
 
 
 def _call(command, run):

@@ -52,12 +52,12 @@ def _is_done(plan, run):
 
 
 class Pool:
-    """Up to `jobs` runs at a time. A signal goes to each of them; after one that stops, no other begins."""
+    """Up to `jobs` runs at a time, by `plan.run_command(run, *options)`. A signal goes to each of them; after one that stops, no other begins."""
 
     def __init__(self, plan, jobs):
         self.plan, self.jobs = plan, jobs
         self.threads = max(1, len(os.sched_getaffinity(0)) // jobs)
-        self.running = {}  # run -> (process, file with its stderr)
+        self.running = {}  # name of a run -> (process, file with its stderr, when it began)
         self.stop_code = 0
 
     def carry_out(self, runs):
@@ -83,12 +83,12 @@ class Pool:
         # In its own session, so that Ctrl-C reaches it through us alone: once.
         process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=said,
                                    start_new_session=True)
-        self.running[run.name] = process, said
+        self.running[run.name] = process, said, time.monotonic()
 
     def _collect(self):
         """Takes leave of the runs that have ended; returns those that failed."""
         failed = {}
-        for name, (process, said) in list(self.running.items()):
+        for name, (process, said, began) in list(self.running.items()):
             code = process.poll()
             if code is None:
                 continue
@@ -96,7 +96,8 @@ class Pool:
             with said:
                 said.seek(0)
                 words = said.read().strip()
-            ended = {0: "done", STOPPED: "stopped", COME_AGAIN: "stopped"}.get(code, f"failed ({code}): {words}")
+            done = f"done in {time.monotonic() - began:.0f} s"
+            ended = {0: done, STOPPED: "stopped", COME_AGAIN: "stopped"}.get(code, f"failed ({code}): {words}")
             print(f"{name}: {ended}", file=sys.stderr, flush=True)
             if ended.startswith("failed"):
                 failed[name] = code, words
@@ -106,6 +107,6 @@ class Pool:
 
     def _pass_on(self, number, _):
         self.stop_code = self.stop_code or STOP_SIGNALS.get(number, 0)
-        for process, _ in self.running.values():
+        for process, *_ in self.running.values():
             if process.poll() is None:
                 process.send_signal(number)
