@@ -22,7 +22,7 @@ from softgrain.plot.__main__ import main
 from softgrain.plot.rows import Forces, Layers, Pressure
 from softgrain.plot.stages import choose_stages
 
-PROGRAM = Path(__file__).resolve().parents[1] / "plot.py"
+PROGRAM = Path(__file__).resolve().parents[1] / "softgrain"
 
 
 def drawn_texts(figure):
@@ -102,7 +102,7 @@ class Program(Temporary):
             stub.parent.mkdir()
             stub.write_text(f"raise ImportError('No module named {package}')")
             environment = {**os.environ, "PYTHONPATH": str(stub.parent)}
-            result = subprocess.run([sys.executable, PROGRAM, "RUN"], env=environment,
+            result = subprocess.run([sys.executable, PROGRAM, "plot", "RUN"], env=environment,
                                     capture_output=True, text=True)
             self.assertEqual(result.returncode, 2)
             self.assertIn(f"No module named {package}", result.stderr)
@@ -173,6 +173,15 @@ class Pictures(Temporary):
         self.assertIn("plateau 0.080 MPa = 0.16", words)
         self.assertIn("0.50 MPa", words)
         self.assertIn("slope 10 MPa", words)
+
+    def test_the_curve_of_a_packing_has_no_plateau(self):
+        packing = self.open("packing", columns=("strain", "stress_top[Pa]", "phi"))
+        grain = self.open("grain", columns=("strain", "stress_top[Pa]", "something_new"))
+        for runs, plateaus in (([packing], 0), ([grain], 1), ([packing, grain], 1)):
+            with plot.style():
+                figure = plot.draw_curve(runs)
+            words = " ".join(text.get_text() for text in figure.findobj(matplotlib.text.Text))
+            self.assertEqual(words.count("plateau"), plateaus)
 
     def test_one_colour_range_serves_the_whole_run(self):
         run = self.open()

@@ -1,4 +1,4 @@
-"""The stress-strain curve of one grain between two plates, of one run or of several laid over one another."""
+"""The stress-strain curve of a grain or of a packing, of one run or of several laid over one another."""
 
 from dataclasses import dataclass
 from itertools import cycle
@@ -22,6 +22,7 @@ class Curve:
     stress: np.ndarray  # in units of `scale`
     scale: float  # 1 MPa, or sigma_I [Pa]
     characteristic_stress: float | None  # sigma_I [Pa]
+    plateau: measure.Plateau | None  # of a grain between plates; the stress of a packing rises all the way
 
 
 def draw_curve(runs, labels=None, normalise=False):
@@ -54,7 +55,9 @@ def _curve(run, label, normalise):
     if normalise and sigma_i is None:
         raise NotRecorded(f"{run.path}: sigma_I needs bpm.attraction in the case and a snapshot")
     scale = sigma_i if normalise else 1e6
-    return Curve(label, run.series["strain"], stress / scale, scale, sigma_i)
+    strain, packing = run.series["strain"], "phi" in run.series
+    flat = None if packing else measure.plateau(strain, stress / scale)
+    return Curve(label, strain, stress / scale, scale, sigma_i, flat)
 
 
 def _common_characteristic_stress(curves):
@@ -107,7 +110,7 @@ def _draw_branches(axes, curve):
 
 
 def _draw_plateau(axes, curve):
-    flat = measure.plateau(curve.strain, curve.stress)
+    flat = curve.plateau
     if flat is None:
         return
     axes.hlines(flat.mean, *flat.strain_range, color=INK, lw=0.6, ls=(0, (4, 2)), zorder=3)
@@ -136,8 +139,7 @@ def _draw_overlay(axes, curves):
     for curve, colour in zip(curves, cycle(RUN_COLOURS)):
         axes.plot(curve.strain, curve.stress, color=colour, alpha=0.35, lw=0.4)
         eps, sigma = measure.envelope(curve.strain, curve.stress)
-        flat = measure.plateau(curve.strain, curve.stress)
-        words = f": plateau {_stress_text(flat.mean, curve)}" if flat else ""
+        words = f": plateau {_stress_text(curve.plateau.mean, curve)}" if curve.plateau else ""
         axes.plot(eps, measure.moving_mean(eps, sigma), color=colour, lw=1.2, label=curve.label + words)
 
 
