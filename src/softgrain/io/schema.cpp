@@ -43,20 +43,20 @@ std::vector<Key> all_keys() {
       KEY(grain.density, "kg/m^3", positive(), "density rho; the grain weighs rho pi R^2 per metre of depth"),
 
       KEY(bpm.primaries, "", from_to(7, 1e6),
-          "number of primary particles in a grain; compaction: in each, or in the smallest (bpm.equal)"),
+          "number of primary particles in a grain; in a box: in each, or in the smallest (bpm.equal)"),
       KEY(bpm.size_ratio, "", from_to(1, 10), "largest over smallest primary diameter"),
       KEY(bpm.attraction, "N/m", at_least(0),
           "attraction F0 between touching primaries of the grain, per metre of depth (diametral)"),
       KEY(bpm.cohesive_pressure, "MPa", positive(),
           "internal cohesive pressure sigma_I = F0/<a0>, the same in all grains: F0 follows the size of their "
-          "primaries (compaction)"),
+          "primaries (in a box)"),
       KEY(bpm.exponent, "", at_least(1),
           "exponent gamma of F0 (a0/r)^gamma, r the distance of the centres, a0 the sum of the radii"),
 
-      KEY(bpm.inner_friction, "", at_least(0), "coefficient of friction mu between the primaries of a grain (compaction)"),
+      KEY(bpm.inner_friction, "", at_least(0), "coefficient of friction mu between the primaries of a grain (in a box)"),
       KEY(bpm.equal, "", one_of({"count", "size"}),
-          "what all grains share: the number of primaries, or, to about 5 %, their size (compaction)"),
-      KEY(bpm.library, "", from_to(1, 1000), "different aggregates of which the grains are copies (compaction)"),
+          "what all grains share: the number of primaries, or, to about 5 %, their size (in a box)"),
+      KEY(bpm.library, "", from_to(1, 1000), "different aggregates of which the grains are copies (in a box)"),
 
       KEY(mpm.law, "", one_of(law_names()), "elastic law"),
       KEY(mpm.young_modulus, "MPa", positive(), "Young's modulus E"),
@@ -106,10 +106,10 @@ std::vector<Key> all_keys() {
 
       KEY(sample.seed, "", at_least(0),
           "seed of the random numbers; another seed is another sample of the same grain"),
-      KEY(sample.grains, "", from_to(1, 1e6), "grains in the box (compaction)"),
-      KEY(sample.packing_fraction, "", between(0, 0.8), "undeformed grain area over box area at the start (compaction)"),
-      KEY(sample.smallest_diameter, "mm", positive(), "of the grains in the box, uniform between (compaction)"),
-      KEY(sample.largest_diameter, "mm", positive(), "of the grains in the box (compaction)"),
+      KEY(sample.grains, "", from_to(1, 1e6), "grains in the box"),
+      KEY(sample.packing_fraction, "", between(0, 0.8), "undeformed grain area over box area at the start"),
+      KEY(sample.smallest_diameter, "mm", positive(), "of the grains in the box, uniform between"),
+      KEY(sample.largest_diameter, "mm", positive(), "of the grains in the box"),
 
       KEY(output.samples, "", from_to(1, 1e6), "rows of series.csv, evenly over the run"),
       KEY(output.snapshots, "", from_to(0, 1e5), "restart points, evenly over the run"),
