@@ -1,9 +1,10 @@
 # One set of flags for every target, so that results do not depend on which target a file is built into.
 # -ffp-contract=off and no -ffast-math: the same bits from every build (docs/decisions/0003-floating-point.md).
 add_library(softgrain_options INTERFACE)
-target_compile_options(softgrain_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off -march=${SOFTGRAIN_ARCH})
+set(warnings -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
 if(SOFTGRAIN_WARNINGS_AS_ERRORS)
-  target_compile_options(softgrain_options INTERFACE -Werror)
+  list(APPEND warnings -Werror)
 endif()
+# Who uses an installed softgrain has warnings of their own, but the same numbers.
+target_compile_options(softgrain_options INTERFACE "$<BUILD_INTERFACE:${warnings}>" -ffp-contract=off -march=${SOFTGRAIN_ARCH})
 find_package(OpenMP REQUIRED COMPONENTS CXX)

@@ -15,6 +15,8 @@
 
 namespace softgrain {
 
+namespace fs = std::filesystem;
+
 namespace {
 
 std::string python() {
@@ -22,28 +24,36 @@ std::string python() {
   return chosen != nullptr && *chosen != '\0' ? chosen : "/usr/bin/python3";
 }
 
-/// Names this program to the script. A program that the caller named already stays.
-void export_own_path() {
+/// Empty if the system does not tell.
+fs::path own_path() {
   std::error_code unknown;
-  const auto path = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  if (!unknown) setenv("SOFTGRAIN_PROGRAM", path.c_str(), 0);
+  return fs::read_symlink("/proc/self/exe", unknown);
+}
+
+/// The Python package: installed beside this program, or in the source tree that it was built from.
+fs::path package() {
+  const BuildInfo build = build_info();
+  const fs::path installed = own_path().parent_path().parent_path() / build.python_installed / "softgrain";
+  std::error_code unknown;
+  return fs::exists(installed, unknown) ? installed : fs::path(build.python_source) / "softgrain";
 }
 
 }  // namespace
 
-void become_python(const std::string& script, std::vector<std::string> words) {
-  words.insert(words.begin(), {python(), std::string(build_info().share_directory) + "/python/" + script});
+void become_python(const std::string& verb, std::vector<std::string> words) {
+  words.insert(words.begin(), {python(), package().string(), verb});
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  export_own_path();
+  // a program that the caller named already stays
+  if (const fs::path own = own_path(); !own.empty()) setenv("SOFTGRAIN_PROGRAM", own.c_str(), 0);
   std::fflush(nullptr);
   execvp(argv[0], argv.data());
   throw UsageError(
       fmt::format("cannot start {}: {}; `softgrain {}` needs Python: on Debian,\n"
                   "  apt install python3-matplotlib python3-h5py\n"
                   "SOFTGRAIN_PYTHON names another interpreter",
-                  argv[0], std::strerror(errno), std::filesystem::path(script).stem().string()));
+                  argv[0], std::strerror(errno), verb));
 }
 
 }  // namespace softgrain

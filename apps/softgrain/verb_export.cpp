@@ -47,7 +47,7 @@ void add_export_verb(CLI::App& app) {
       "\nxyz, lammps: particles with radius, grain and pressure. csv: all fields of the particles. svg: a "
       "picture.\n"
       "Needs Python with NumPy and h5py: /usr/bin/python3, or what SOFTGRAIN_PYTHON names.");
-  verb->callback([arguments] { become_python("export.py", words_of(*arguments)); });
+  verb->callback([arguments] { become_python("export", words_of(*arguments)); });
 }
 
 }  // namespace softgrain

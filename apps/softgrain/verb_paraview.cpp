@@ -17,7 +17,7 @@ void add_paraview_verb(CLI::App& app) {
       "  paraview --script=$(softgrain paraview squeeze/case_run)\n"
       "\nRUN/paraview/scene.py shows grains, particles coloured by pressure, contacts as tubes, and walls.\n"
       "Needs Python with NumPy and h5py: /usr/bin/python3, or what SOFTGRAIN_PYTHON names.");
-  verb->callback([run] { become_python("export.py", {"--to=paraview", "--", *run}); });
+  verb->callback([run] { become_python("export", {"--to=paraview", "--", *run}); });
 }
 
 }  // namespace softgrain

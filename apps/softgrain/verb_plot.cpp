@@ -47,7 +47,7 @@ void add_plot_verb(CLI::App& app) {
       "  softgrain plot squeeze/case_run                     into squeeze/case_run/figures\n"
       "  softgrain plot slow fast --kind curve --format svg  two runs in one curve\n"
       "\nNeeds Python with Matplotlib and h5py: /usr/bin/python3, or what SOFTGRAIN_PYTHON names.");
-  verb->callback([arguments] { become_python("plot.py", words_of(*arguments)); });
+  verb->callback([arguments] { become_python("plot", words_of(*arguments)); });
 }
 
 }  // namespace softgrain

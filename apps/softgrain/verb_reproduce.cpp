@@ -20,7 +20,7 @@ struct ReproduceArguments {
   std::vector<std::string> words{arguments.figure, "--scale", arguments.scale,
                                  "--output=" + arguments.output};
   if (arguments.jobs > 0) words.push_back("--jobs=" + std::to_string(arguments.jobs));
-  become_python("reproduce.py", std::move(words));
+  become_python("reproduce", std::move(words));
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ void add_sweep_verb(CLI::App& app) {
       "\nCalled again it does what is not done yet. A run that fails does not stop the others: exit code 3.\n"
       "Needs Python with NumPy, for the figure Matplotlib and h5py: /usr/bin/python3, or what "
       "SOFTGRAIN_PYTHON names.");
-  verb->callback([arguments] { become_python("sweep.py", words_of(*arguments)); });
+  verb->callback([arguments] { become_python("sweep", words_of(*arguments)); });
 }
 
 }  // namespace softgrain

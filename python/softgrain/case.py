@@ -3,10 +3,12 @@
 import json
 import os
 import subprocess
+import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from .run import Run, open_run
+from .run import Run, html_table, open_run
 
 
 class CaseError(ValueError):
@@ -23,10 +25,16 @@ class RunFailed(RuntimeError):
 
 @dataclass(frozen=True)
 class Case:
-    """A case file and values that replace its own: `Case("case.toml").set("contact.friction", 0.3)`."""
+    """A case file and values that replace its own: `Case("case.toml").set("contact.friction", 0.3)`, or values alone in
+    place of the defaults: `Case({"experiment": {"model": "mpm"}, "mpm": {"young_modulus": "5 MPa"}})`."""
 
-    path: str | Path
+    path: str | Path | Mapping
     values: tuple[tuple[str, str], ...] = ()
+
+    def __post_init__(self):
+        if isinstance(self.path, Mapping):  # an empty file, and all of them set
+            object.__setattr__(self, "values", (*_flat(self.path), *self.values))
+            object.__setattr__(self, "path", os.devnull)
 
     def set(self, key: str, value) -> "Case":
         """The same case with one more value replaced; a quantity is a number in SI or text, "0.05 us"."""
@@ -36,6 +44,12 @@ class Case:
     def resolve(self) -> dict:
         """The whole case in SI, with every default filled in. Raises CaseError."""
         return json.loads(_call("check", *self._words(), "--json"))["case"]
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the values that are not left to their defaults, unchecked."""
+        given = dict(_flat(tomllib.loads(Path(self.path).read_text())))
+        name = "" if self.path == os.devnull else str(self.path)
+        return html_table(name, {**given, **dict(self.values)})
 
     def _words(self) -> list[str]:
         return [str(self.path), *(f"--set={key}={value}" for key, value in self.values)]
@@ -65,6 +79,15 @@ def _call(*words: str) -> str:
     if process.returncode != 0:
         raise RunFailed(err.strip() or f"stopped with exit code {process.returncode}", process.returncode)
     return out
+
+
+def _flat(tables: Mapping):
+    """("contact.friction", "0.3") for {"contact": {"friction": 0.3}} or {"contact.friction": 0.3}."""
+    for name, value in tables.items():
+        if isinstance(value, Mapping):
+            yield from ((f"{name}.{key}", text) for key, text in _flat(value))
+        else:
+            yield name, _toml(value)
 
 
 def _toml(value) -> str:

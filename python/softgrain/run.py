@@ -105,8 +105,7 @@ class Run:
         last = {name: f"{values[-1]:.6g} {self.units[name]}" for name, values in self.series.items()}
         facts = {"state": self.info.get("state", "not begun"), "verdict": self.info.get("verdict", ""),
                  "snapshots": len(self), **last}
-        rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(str(text))}</td></tr>" for name, text in facts.items())
-        return f"<table><caption>{escape(self.name)}</caption>{rows}</table>"
+        return html_table(self.name, facts)
 
 
 @dataclass(frozen=True)
@@ -140,6 +139,12 @@ def open_run(path: str | Path) -> Run:
     if not (path / "case.toml").is_file():
         raise NotARun(f"'{path}' is not the directory of a run: it has no case.toml")
     return Run(path)
+
+
+def html_table(caption: str, facts: dict) -> str:
+    """Names and values for a notebook; text stays text."""
+    rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(str(value))}</td></tr>" for name, value in facts.items())
+    return f"<table><caption>{escape(caption)}</caption>{rows}</table>"
 
 
 def _arrays(scene, name):

@@ -19,7 +19,7 @@ import numpy as np
 from softgrain.sweep import PlanError, __main__, read_plan
 from softgrain.sweep.figure import mean_curve
 
-PROGRAM = Path(__file__).resolve().parents[1] / "sweep.py"
+PROGRAM = Path(__file__).resolve().parents[1] / "softgrain"
 
 # Its stress is 100 friction + seed; friction = 7 fails; friction = 9 waits for a signal.
 STAND_IN = f"""#!{sys.executable}
@@ -108,7 +108,7 @@ class Temporary(unittest.TestCase):
     def start(self, *arguments, before=(), **values):
         """The same as a process of its own; `before` are the words of a program that starts it."""
         environment = {**os.environ, "SOFTGRAIN_PROGRAM": str(self.program)}
-        return subprocess.Popen([*before, sys.executable, PROGRAM, *self.words(*arguments, **values)], env=environment,
+        return subprocess.Popen([*before, sys.executable, PROGRAM, "sweep", *self.words(*arguments, **values)], env=environment,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def results(self):
@@ -188,7 +188,7 @@ class Sweeps(Temporary):
         stub = self.folder / "matplotlib.py"
         stub.write_text("raise ImportError('No module named matplotlib')")
         environment = {**os.environ, "SOFTGRAIN_PROGRAM": str(self.program), "PYTHONPATH": str(self.folder)}
-        result = subprocess.run([sys.executable, PROGRAM, *self.words()], env=environment, capture_output=True,
+        result = subprocess.run([sys.executable, PROGRAM, "sweep", *self.words()], env=environment, capture_output=True,
                                 text=True)
         self.assertEqual(result.returncode, 0)
         self.assertIn("no figure: No module named matplotlib", result.stderr)

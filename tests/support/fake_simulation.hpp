@@ -23,10 +23,12 @@ class BouncingBall : public Simulation {
   bool finished() const override { return step_ >= last_step; }
   double progress() const override { return progress_at_end * static_cast<double>(step_) / last_step; }
   double time() const override { return 0.005 * static_cast<double>(step_); }
+  double strain() const override { return 0; }
   std::int64_t steps_done() const override { return step_; }
   std::int64_t steps_planned() const override { return last_step; }
   bool at_turning_point() const override { return step_ == turns_at; }
 
+  void follow(PlateMotion) override {}
   StepReport step() override {
     if (step_ == breaks_at) throw NumericalError("step 17: position of particle 0 is not finite");
     if (pause > 0) usleep(pause);
@@ -55,6 +57,7 @@ class BouncingBall : public Simulation {
     return {{"step", "", static_cast<double>(step_)}, {"time", "s", time()}, {"mean_height", "m", mean}};
   }
 
+  std::vector<GrainView> grains() const override { return {}; }
   Scene scene() const override {
     Scene scene;
     scene.particles["position"] = {2, std::vector<double>{0, height_ + 0.1}};

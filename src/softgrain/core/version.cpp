@@ -10,7 +10,8 @@ BuildInfo build_info() {
 #else
   const char* compiler = "g++ " __VERSION__;
 #endif
-  return {SOFTGRAIN_VERSION, SOFTGRAIN_COMMIT, compiler, SOFTGRAIN_BUILD_FLAGS, SOFTGRAIN_SHARE_DIR};
+  return {SOFTGRAIN_VERSION,     SOFTGRAIN_COMMIT,        compiler,
+          SOFTGRAIN_BUILD_FLAGS, SOFTGRAIN_PYTHON_SOURCE, SOFTGRAIN_PYTHON_INSTALLED};
 }
 
 }  // namespace softgrain

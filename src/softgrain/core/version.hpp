@@ -8,7 +8,8 @@ struct BuildInfo {
   const char* commit;
   const char* compiler;
   const char* flags;
-  const char* share_directory;  ///< where plot scripts and templates lie
+  const char* python_source;     ///< folder of the Python package in the source tree
+  const char* python_installed;  ///< the same where the program is installed, below its prefix
 };
 
 BuildInfo build_info();

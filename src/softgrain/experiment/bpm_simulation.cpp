@@ -118,7 +118,7 @@ std::vector<Quantity> BpmSimulation::row_of(std::vector<Quantity> own) const {
   std::vector<Quantity> row{
       {"step", "", static_cast<double>(step_)},
       {"time", "s", time()},
-      {"strain", "", drive_.strain(height_start_, plate_distance())},
+      {"strain", "", strain()},
       {"leg", "", static_cast<double>(drive_.leg(std::max<std::int64_t>(step_ - 1, 0)))},
       {"wall_height", "m", plate_distance()},
   };
@@ -194,6 +194,19 @@ Scene BpmSimulation::scene() const {
   scene.contacts["force"] = {1, std::move(force)};
   complete_scene(scene);
   return scene;
+}
+
+std::vector<GrainView> BpmSimulation::grains() const {
+  const auto& particles = dynamics_.particles;
+  std::vector<GrainView> views;
+  for (int i = 0; i < particles.size(); ++i) {  // the primaries of a grain lie one after the other
+    if (particles.grain[i] == static_cast<int>(views.size()))
+      views.push_back({.position = {.begin = particles.position[i].c.data()},
+                       .velocity = {.begin = particles.velocity[i].c.data()},
+                       .outline = {}});
+    views.back().velocity.rows = ++views.back().position.rows;
+  }
+  return views;
 }
 
 Checkpoint BpmSimulation::checkpoint() const {

@@ -23,11 +23,14 @@ class BpmSimulation : public Simulation {
   bool finished() const override { return drive_.finished(step_); }
   double progress() const override { return drive_.progress(step_); }
   double time() const override { return static_cast<double>(step_) * case_.time.step; }
+  double strain() const override { return drive_.strain(height_start_, plate_distance()); }
   std::int64_t steps_done() const override { return step_; }
   std::int64_t steps_planned() const override { return drive_.steps_planned(); }
   bool at_turning_point() const override { return drive_.at_turning_point(step_); }
+  void follow(PlateMotion motion) override { drive_.follow(std::move(motion)); }
   StepReport step() override;
   Scene scene() const override;
+  std::vector<GrainView> grains() const override;
   Checkpoint checkpoint() const override;
   void restore(const Checkpoint& checkpoint) override;
 

@@ -110,7 +110,7 @@ std::vector<Quantity> MpmSimulation<Dynamics>::observe() {
   std::vector<Quantity> row{
       {"step", "", static_cast<double>(step_)},
       {"time", "s", time()},
-      {"strain", "", drive_.strain(height_start_, height)},
+      {"strain", "", strain()},
       {"leg", "", static_cast<double>(drive_.leg(std::max<std::int64_t>(step_ - 1, 0)))},
       {"wall_height", "m", height},
       {"width", "m", width},
@@ -199,7 +199,13 @@ void MpmSimulation<Dynamics>::restore(const Checkpoint& state) {
   std::vector<Vec<5>> places(count);
   from_array<5>(state, "contact_places", places);
   dynamics_.contacts.clear();
+  const auto vertices = static_cast<std::int64_t>(dynamics_.grains.outline_size());
+  const auto count_walls = static_cast<std::int64_t>(dynamics_.walls.size());
   for (std::size_t c = 0; c < count; ++c) {
+    for (std::size_t k = 0; k < 6; ++k)
+      if (const std::int64_t n = (*numbers)[6 * c + k];
+          n < (k == 1 ? -1 : 0) || n >= (k == 1 ? count_walls : vertices))
+        throw IoError(fmt::format("the checkpoint's array 'contact_bodies' holds {}", n));
     const auto body = [&](std::size_t k) { return static_cast<int>((*numbers)[6 * c + k]); };
     dynamics_.contacts.push_back({.vertex = body(0),
                                   .wall = body(1),

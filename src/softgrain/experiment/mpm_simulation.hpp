@@ -25,13 +25,16 @@ class MpmSimulation final : public Simulation {
   bool finished() const override { return drive_.finished(step_); }
   double progress() const override { return drive_.progress(step_); }
   double time() const override { return static_cast<double>(step_) * dt_; }
+  double strain() const override { return drive_.strain(height_start_, plate_distance()); }
   std::int64_t steps_done() const override { return step_; }
   std::int64_t steps_planned() const override { return drive_.steps_planned(); }
   bool at_turning_point() const override { return drive_.at_turning_point(step_); }
   std::string early_end() const override { return drive_.early_end(step_); }
+  void follow(PlateMotion motion) override { drive_.follow(std::move(motion)); }
   StepReport step() override;
   std::vector<Quantity> observe() override;
   Scene scene() const override { return soft_scene(view()); }
+  std::vector<GrainView> grains() const override { return grain_views(dynamics_.grains); }
   Checkpoint checkpoint() const override;
   void restore(const Checkpoint& checkpoint) override;
 

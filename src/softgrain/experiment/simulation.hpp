@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <variant>
@@ -39,6 +40,27 @@ struct Scene {
   std::vector<double> wall_segments;  ///< x0 y0 x1 y1 for each wall [m]
 };
 
+/// Vectors where they lie in memory: component d of row i is begin[i * row + d * component].
+struct VectorView {
+  const double* begin = nullptr;
+  std::size_t rows = 0;
+  std::size_t row = 2, component = 1;
+};
+
+/// One grain where it lies in memory: it follows the steps, and lasts as long as the simulation.
+struct GrainView {
+  VectorView position;  ///< of primaries, grid nodes or material points [m]
+  VectorView velocity;  ///< theirs [m/s]
+  VectorView outline;   ///< vertices, counter-clockwise [m]; none where only the scene finds them (bpm)
+};
+
+/// How the plates move when it is not the case that says it.
+struct PlateMotion {
+  double duration = 0;  ///< [s]
+  std::function<double(double)>
+      velocity;  ///< of time [s]: rate of the distance of the plates [m/s], negative while loading
+};
+
 /// The one abstract class: an experiment with a model of a grain, advanced step by step.
 class Simulation {
  public:
@@ -46,18 +68,22 @@ class Simulation {
   virtual bool finished() const = 0;
   virtual double progress() const = 0;  ///< 0 at the start, 1 when finished; never goes back
   virtual double time() const = 0;      ///< [s]
+  virtual double strain() const = 0;    ///< by the walls, as in the rows
   virtual std::int64_t steps_done() const = 0;
   virtual std::int64_t steps_planned() const = 0;
   /// Why the simulation has finished before its last planned step, for the user; "" if it has not.
   virtual std::string early_end() const { return ""; }
   /// True after the last step before the load turns: a state worth keeping.
   virtual bool at_turning_point() const = 0;
+  /// Before the first step: the plates leave the case's loading path for this motion. Raises UsageError.
+  virtual void follow(PlateMotion motion) = 0;
   /// Advances by one time step. Raises NumericalError when the state is not finite or the overlap shows that
   /// no solution exists.
   virtual StepReport step() = 0;
   /// The row of series.csv now. Wall forces are means over the steps since the last call of `observe`.
   virtual std::vector<Quantity> observe() = 0;
   virtual Scene scene() const = 0;
+  virtual std::vector<GrainView> grains() const = 0;
   virtual Checkpoint checkpoint() const = 0;
   virtual void restore(const Checkpoint& checkpoint) = 0;
 };

@@ -122,4 +122,22 @@ Scene soft_scene(const SoftView& view) {
   return scene;
 }
 
+std::vector<GrainView> grain_views(const SoftGrains& grains) {
+  static_assert(sizeof(Vec<2, Wide>) == 2 * Wide::size * sizeof(double));
+  const auto lane_of = [](const WideVectors& nodes, int first, int lane) {
+    return VectorView{.begin = reinterpret_cast<const double*>(&nodes[first]) + lane,
+                      .rows = nodes.size() - static_cast<std::size_t>(first),
+                      .row = 2 * Wide::size,
+                      .component = Wide::size};
+  };
+  std::vector<GrainView> views;
+  for (int g = 0; g < grains.size(); ++g) {
+    const auto [batch, lane] = grains.batch_of(g);
+    views.push_back({.position = lane_of(batch->position, 0, lane),
+                     .velocity = lane_of(batch->velocity, 0, lane),
+                     .outline = lane_of(batch->position, grains.topology(g).grid.outline_begin, lane)});
+  }
+  return views;
+}
+
 }  // namespace softgrain

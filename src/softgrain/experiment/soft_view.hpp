@@ -32,4 +32,7 @@ std::vector<Quantity> soft_packing_row(const SoftView& view, double strain_rate)
 /// and the walls.
 Scene soft_scene(const SoftView& view);
 
+/// The nodes of each grain in its lane.
+std::vector<GrainView> grain_views(const SoftGrains& grains);
+
 }  // namespace softgrain

@@ -7,6 +7,8 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/arrays.hpp"
+#include "softgrain/experiment/diametral_path.hpp"
+#include "softgrain/experiment/given_path.hpp"
 #include "softgrain/geometry/polygon.hpp"
 #include "softgrain/math/tensor.hpp"
 
@@ -70,15 +72,19 @@ std::vector<Vec<4>> components(std::span<const Mat<2>> tensors) {
 UpdatedLagrangianSimulation::UpdatedLagrangianSimulation(const Case& c)
     : dynamics_(dynamics_of(c)),
       dt_(time_step_of(c, dynamics_)),
-      path_(c.loading, c.grain.radius, dt_),
+      path_(std::make_unique<DiametralPath>(c.loading, c.grain.radius, dt_)),
       height_start_(plate_distance()) {}
 
 double UpdatedLagrangianSimulation::plate_distance() const {
   return dynamics_.walls[top_wall].point[1] - dynamics_.walls[bottom_wall].point[1];
 }
 
+void UpdatedLagrangianSimulation::follow(PlateMotion motion) {
+  path_ = std::make_unique<GivenPath>(std::move(path_), std::move(motion), dt_);
+}
+
 StepReport UpdatedLagrangianSimulation::step() {
-  dynamics_.walls[top_wall].velocity = {0, path_.plate_velocity(step_)};
+  dynamics_.walls[top_wall].velocity = {0, path_->plate_velocity(step_)};
   const SoftStepReport soft = dynamics_.step(dt_);
   ++step_;
   sums_.force_bottom -= dynamics_.wall_impulse(bottom_wall)[1];
@@ -107,8 +113,8 @@ std::vector<Quantity> UpdatedLagrangianSimulation::observe() {
   return {
       {"step", "", static_cast<double>(step_)},
       {"time", "s", time()},
-      {"strain", "", path_.strain(height_start_, plate_distance())},
-      {"leg", "", static_cast<double>(path_.leg(std::max<std::int64_t>(step_ - 1, 0)))},
+      {"strain", "", strain()},
+      {"leg", "", static_cast<double>(path_->leg(std::max<std::int64_t>(step_ - 1, 0)))},
       {"wall_height", "m", plate_distance()},
       {"width", "m", right - left},
       {"stress_bottom", "Pa", force_bottom / (right - left)},
@@ -158,6 +164,15 @@ Scene UpdatedLagrangianSimulation::scene() const {
     scene.wall_segments.insert(scene.wall_segments.end(), {left - margin, y, right + margin, y});
   }
   return scene;
+}
+
+std::vector<GrainView> UpdatedLagrangianSimulation::grains() const {
+  const auto view = [](const std::vector<Vec<2>>& vectors) {
+    return VectorView{.begin = vectors.front().c.data(), .rows = vectors.size()};
+  };
+  return {{.position = view(grain().position),
+           .velocity = view(grain().velocity),
+           .outline = view(grain().outline)}};
 }
 
 Checkpoint UpdatedLagrangianSimulation::checkpoint() const {

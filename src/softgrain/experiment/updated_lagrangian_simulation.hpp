@@ -1,6 +1,8 @@
 #pragma once
+#include <memory>
+
 #include "softgrain/experiment/case.hpp"
-#include "softgrain/experiment/diametral_path.hpp"
+#include "softgrain/experiment/plate_path.hpp"
 #include "softgrain/experiment/simulation.hpp"
 #include "softgrain/mpm/updated_lagrangian.hpp"
 
@@ -13,15 +15,20 @@ class UpdatedLagrangianSimulation final : public Simulation {
  public:
   explicit UpdatedLagrangianSimulation(const Case& the_case);
 
-  bool finished() const override { return step_ >= path_.steps(); }
-  double progress() const override { return static_cast<double>(step_) / static_cast<double>(path_.steps()); }
+  bool finished() const override { return step_ >= path_->steps(); }
+  double progress() const override {
+    return static_cast<double>(step_) / static_cast<double>(path_->steps());
+  }
   double time() const override { return static_cast<double>(step_) * dt_; }
+  double strain() const override { return path_->strain(height_start_, plate_distance()); }
   std::int64_t steps_done() const override { return step_; }
-  std::int64_t steps_planned() const override { return path_.steps(); }
-  bool at_turning_point() const override { return step_ > 0 && path_.leg(step_) != path_.leg(step_ - 1); }
+  std::int64_t steps_planned() const override { return path_->steps(); }
+  bool at_turning_point() const override { return step_ > 0 && path_->leg(step_) != path_->leg(step_ - 1); }
+  void follow(PlateMotion motion) override;
   StepReport step() override;
   std::vector<Quantity> observe() override;
   Scene scene() const override;
+  std::vector<GrainView> grains() const override;
   Checkpoint checkpoint() const override;
   void restore(const Checkpoint& checkpoint) override;
 
@@ -37,7 +44,7 @@ class UpdatedLagrangianSimulation final : public Simulation {
 
   UpdatedLagrangianDynamics dynamics_;
   double dt_ = 0;
-  DiametralPath path_;
+  std::unique_ptr<PlatePath> path_;
   double height_start_ = 0;
   std::int64_t step_ = 0;
   Sums sums_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/experiment/given_path.hpp"
 
 namespace softgrain {
 namespace {
@@ -20,6 +21,10 @@ WallDrive::WallDrive(const Case::Loading& loading, std::unique_ptr<PlatePath> pa
       hold_steps_(std::max<std::int64_t>(1, std::llround(loading.hold / dt))) {
   require(loading.hold_stress == 0 || loading.hold > 0,
           "loading.hold_stress {} Pa needs loading.hold > 0: for how long", loading.hold_stress);
+}
+
+void WallDrive::follow(PlateMotion motion) {
+  path_ = std::make_unique<GivenPath>(std::move(path_), std::move(motion), dt_);
 }
 
 int WallDrive::leg(std::int64_t step) const {

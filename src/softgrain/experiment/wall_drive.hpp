@@ -26,6 +26,10 @@ class WallDrive {
   /// Raises UsageError for a stress that is held for no time.
   WallDrive(const Case::Loading& loading, std::unique_ptr<PlatePath> path, double dt);
 
+  /// The walls leave the path for this motion, each with its share; what a strain is stays. Raises
+  /// UsageError.
+  void follow(PlateMotion motion);
+
   /// Steps of the whole path; the hold of a stress ends before.
   std::int64_t steps_planned() const { return path_->steps(); }
   bool finished(std::int64_t step) const { return state.ended || step >= end(); }

@@ -16,15 +16,18 @@ class Countdown final : public Simulation {
   bool finished() const override { return done_ == 10; }
   double progress() const override { return static_cast<double>(done_) / 10; }
   double time() const override { return static_cast<double>(done_); }
+  double strain() const override { return 0; }
   std::int64_t steps_done() const override { return done_; }
   std::int64_t steps_planned() const override { return 10; }
   bool at_turning_point() const override { return false; }
+  void follow(PlateMotion) override {}
   StepReport step() override {
     const int k = static_cast<int>(++done_);
     return {.sweeps = k, .residual_max = 1.0 / k, .overlap_max = 0.1 * k, .converged = k % 3 == 0};
   }
   std::vector<Quantity> observe() override { return {}; }
   Scene scene() const override { return {}; }
+  std::vector<GrainView> grains() const override { return {}; }
   Checkpoint checkpoint() const override { return {}; }
   void restore(const Checkpoint&) override {}
 

@@ -1,0 +1,24 @@
+"""What `softgrain plot`, `sweep`, `export` and `reproduce` become: python3 DIR/softgrain VERB WORDS."""
+
+import sys
+from importlib import import_module
+from pathlib import Path
+
+if not __package__:  # the folder itself was run: its neighbours must not hide other packages
+    sys.path[0] = str(Path(__file__).parent.parent)
+
+
+def main(verb, *words):
+    try:
+        if verb != "sweep":
+            import h5py  # noqa: F401  needed later, wanted now
+        program = import_module(f"softgrain.{verb}.__main__")
+    except ImportError as missing:
+        print(f"error: {missing}\n`softgrain {verb}` needs NumPy, h5py and Matplotlib for {sys.executable}; on Debian:\n"
+              "  apt install python3-matplotlib python3-h5py", file=sys.stderr)
+        return 2
+    return program.main(words)
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

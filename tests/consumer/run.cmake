@@ -1,0 +1,20 @@
+# cmake -D BUILD=... -D SCRATCH=... -D GENERATOR=... -D COMPILER=... -D FLAGS=... -P run.cmake
+# Installs softgrain from its build folder, then configures, builds and runs the consumer against it.
+file(REMOVE_RECURSE "${SCRATCH}")
+function(run)
+  execute_process(COMMAND ${ARGV} OUTPUT_VARIABLE said ERROR_VARIABLE said RESULT_VARIABLE code)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "${ARGV}: ${code}\n${said}")
+  endif()
+  set(said "${said}" PARENT_SCOPE)
+endfunction()
+run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${SCRATCH}/prefix")
+run("${CMAKE_COMMAND}" -S "${CMAKE_CURRENT_LIST_DIR}" -B "${SCRATCH}/build" -G "${GENERATOR}"
+  "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS}" "-DCMAKE_PREFIX_PATH=${SCRATCH}/prefix")
+run("${CMAKE_COMMAND}" --build "${SCRATCH}/build")
+run("${SCRATCH}/build/consumer")
+if(NOT said MATCHES "p = \\(2, -1\\) N s, u = \\(0, 2.5\\) m/s")
+  message(FATAL_ERROR "the consumer found another answer: ${said}")
+endif()
+message("${said}")
+file(REMOVE_RECURSE "${SCRATCH}")
