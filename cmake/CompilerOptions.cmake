@@ -7,4 +7,4 @@ if(SOFTGRAIN_WARNINGS_AS_ERRORS)
 endif()
 # Who uses an installed softgrain has warnings of their own, but the same numbers.
 target_compile_options(softgrain_options INTERFACE "$<BUILD_INTERFACE:${warnings}>" -ffp-contract=off -march=${SOFTGRAIN_ARCH})
-find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(Threads REQUIRED)

@@ -20,7 +20,14 @@ libraries  libhdf5-dev             snapshots
 libraries  libxxhash-dev           content hash of a snapshot
 libraries  zlib1g-dev              compressed files for ParaView
 libraries  libeigen3-dev           sparse matrices of contact problems
+python     python3-dev             headers for the Python module
+python     pybind11-dev            the Python module
 tests      doctest-dev             unit, verification and program tests
+tests      python3-pytest          tests of the Python package
+tests      python3-nbclient        carries out the notebooks of the examples
+tests      python3-ipykernel       carries out the notebooks of the examples
+tests      dpkg-dev                the package for Debian
+tests      file                    the package for Debian
 pictures   python3                 softgrain plot
 pictures   python3-numpy           softgrain plot
 pictures   python3-matplotlib      softgrain plot
@@ -28,17 +35,15 @@ pictures   python3-h5py            softgrain plot reads the snapshots
 checks     python3                 tools/check_layers
 checks     clang-format            one format for all sources
 checks     clang-tidy              names and common mistakes
-checks     libomp-dev              omp.h for clang-tidy
 bench      libbox2d-dev            a peer to measure against
 bench      libsiconos-numerics-dev a peer to measure against
 viewer     chromium                tests the page of softgrain report
 viewer     npm                     tools/check_viewer
 clang      clang                   the second compiler (preset clang)
-clang      libomp-dev              its OpenMP
 TABLE
 }
 
-groups="build libraries tests pictures"
+groups="build libraries python tests pictures"
 while (($#)); do
   case "$1" in
     --list) table && exit 0 ;;

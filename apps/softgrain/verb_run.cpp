@@ -27,7 +27,7 @@ namespace {
 /// What run and resume have in common.
 struct RunOptions {
   std::string directory;
-  int threads = 0;  ///< 0: as OpenMP chooses
+  int threads = 0;  ///< 0: as many as threads() says
   std::string stop_after;
   ProgressStyle progress = ProgressStyle::automatic;
   bool quiet = false;

@@ -17,8 +17,7 @@ using Words = std::vector<std::string>;
 /// A temporary directory in which the program runs.
 class Workshop {
  public:
-  Process::Environment environment{
-      {"OMP_WAIT_POLICY", "passive"}};  ///< more threads than cores must not spin
+  Process::Environment environment;
 
   std::filesystem::path path(const std::string& name) const { return directory_.path() / name; }
   std::string file(const std::string& name, const std::string& text) const {
