@@ -8,10 +8,18 @@
 #include "softgrain/contact/nlgs.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
+#include "softgrain/mpm/contact_work.hpp"
 #include "softgrain/mpm/equilibrium.hpp"
 #include "softgrain/mpm/lumped_contacts.hpp"
 
 namespace softgrain {
+namespace {
+
+/// Contacts are looked for up to this gap at the end of the free flight, in units of a segment of the
+/// outline: the impulses of a stable step move a vertex by a few hundredths of it.
+constexpr double contact_margin = 0.1;
+
+}  // namespace
 
 ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
                                    const ExplicitOptions& explicit_options)
@@ -44,7 +52,7 @@ SoftStepReport ExplicitDynamics::step(double dt) {
   for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
   outline_.walls = walls;
   outline_.dt = dt;
-  std::vector<OutlineContact> found = neighbours_.detect(grains, outline_);
+  std::vector<OutlineContact> found = neighbours_.detect(grains, outline_, contact_margin);
   impulse = carried_impulses(grains, contacts, impulse, found);
   contacts = std::move(found);
 
@@ -76,13 +84,13 @@ SoftStepReport ExplicitDynamics::step(double dt) {
 
 /// v_free = v + dt M^-1 (f_ext - f_int)
 void ExplicitDynamics::kick(double dt) {
-  std::vector<unsigned> inverted(grains.batches.size());
+  std::vector<int> inverted(grains.batches.size(), -1);
   parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
     GrainBatch& batch = grains.batches[b];
     if (options.damping_time > 0)
       for (std::size_t i = 0; i < batch.position.size(); ++i)
         batch.position[i] += Wide(options.damping_time) * batch.velocity[i];
-    inverted[b] = internal_force(grains, batch, force_[b]);
+    inverted[b] = batch.grain_in(internal_force(grains, batch, force_[b]));
     velocity_start_[b] = batch.velocity;
     const Wide scale = Wide(dt) / (grains.density * (batch.radius * batch.radius));
     for (std::size_t i = 0; i < batch.position.size(); ++i) {
@@ -91,11 +99,10 @@ void ExplicitDynamics::kick(double dt) {
       for (int d = 0; d < 2; ++d) batch.velocity[i][d] += dt * options.gravity[d] - rate * force_[b][i][d];
     }
   });
-  for (std::size_t b = 0; b < inverted.size(); ++b)
-    for (int lane = 0; lane < Wide::size; ++lane)
-      if (const int grain = grains.batches[b].grain[lane]; (inverted[b] >> lane & 1u) != 0 && grain >= 0)
-        throw NumericalError(
-            fmt::format("a material point of grain {} is turned inside out; use a smaller time step", grain));
+  for (const int grain : inverted)
+    if (grain >= 0)
+      throw NumericalError(
+          fmt::format("a material point of grain {} is turned inside out; use a smaller time step", grain));
 }
 
 /// x+ = x + dt v+, and the work over the step, in which M (v+ - v) does (v+ + v)/2 . M (v+ - v) = dK.
@@ -123,13 +130,7 @@ void ExplicitDynamics::add_contact_work(double dt) {
   for (std::size_t v = 0; v < outline_velocity_.size(); ++v)
     mean.position[v] = mean.start[v] + dt / 2 * (outline_velocity_[v] + velocity_start_outline_[v]);
   wall_impulse_.assign(walls.size(), {});
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const Vec<2> P = impulse_vector(contacts[c], impulse[c]);
-    work.contacts -= dot(P, relative_displacement(contacts[c], mean)) / dt;
-    if (contacts[c].wall < 0) continue;
-    wall_impulse_[contacts[c].wall] -= P;
-    work.walls += dot(P, walls[contacts[c].wall].velocity);
-  }
+  softgrain::add_contact_work(contacts, impulse, mean, work, wall_impulse_);
 }
 
 /// Velocities of the outlines out of the lanes, and back.

@@ -1,3 +1,4 @@
+#include "softgrain/mpm/contact_work.hpp"
 #include "softgrain/mpm/implicit_step.hpp"
 
 namespace softgrain {
@@ -23,7 +24,7 @@ void ImplicitDynamics::balance_momentum(double dt) {
   }
 }
 
-void ImplicitDynamics::add_work(double dt) {
+void ImplicitDynamics::add_work() {
   for (std::size_t b = 0; b < grains.batches.size(); ++b) {
     const GrainBatch& batch = grains.batches[b];
     Wide internal = 0.0, inertia = 0.0, gravity = 0.0;
@@ -41,13 +42,7 @@ void ImplicitDynamics::add_work(double dt) {
       work.gravity += gravity[lane];
     }
   }
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const Vec<2> P = impulse_vector(contacts[c], impulse[c]);
-    work.contacts -= dot(P, relative_displacement(contacts[c], outline_)) / dt;
-    if (contacts[c].wall < 0) continue;
-    wall_impulse_[contacts[c].wall] -= P;
-    work.walls += dot(P, walls[contacts[c].wall].velocity);
-  }
+  add_contact_work(contacts, impulse, outline_, work, wall_impulse_);
 }
 
 }  // namespace softgrain

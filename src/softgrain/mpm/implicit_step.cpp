@@ -24,13 +24,6 @@ constexpr double contact_share = 0.25;
 
 std::span<Wide> numbers(WideVectors& vectors) { return {&vectors[0][0], 2 * vectors.size()}; }
 
-/// First grain among the lanes set in `lanes`, -1 if none holds a grain.
-int grain_in(const GrainBatch& batch, unsigned lanes) {
-  for (int lane = 0; lane < Wide::size; ++lane)
-    if ((lanes >> lane & 1u) != 0 && batch.grain[lane] >= 0) return batch.grain[lane];
-  return -1;
-}
-
 }  // namespace
 
 ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
@@ -71,19 +64,22 @@ SoftStepReport ImplicitDynamics::step(double dt) {
     }
     take_back();
     ++report.rejected;
-    if (++halvings > options.max_halvings) {
-      const char* cause = failure == Failure::inverted_point      ? "a material point is turned inside out"
-                          : failure == Failure::indefinite_matrix ? "the stiffness is indefinite"
-                          : failure == Failure::too_far           ? "a correction is larger than a grain"
-                                                                  : "Newton's method does not converge";
-      throw NumericalError(
-          fmt::format("no step of soft grains down to dt = {:.3g} s: {} in grain {}; use a smaller time step "
-                      "or a finer grid",
-                      part, cause, failed_grain_));
-    }
+    if (++halvings > options.max_halvings) give_up(failure, part);
     part /= 2;
   }
   return report;
+}
+
+void ImplicitDynamics::give_up(Failure failure, double dt) const {
+  const char* cause = failure == Failure::inverted_point      ? "a material point is turned inside out"
+                      : failure == Failure::indefinite_matrix ? "the stiffness is indefinite"
+                      : failure == Failure::not_finite        ? "a correction is not finite"
+                      : failure == Failure::too_far           ? "a correction is larger than half a grain"
+                                                              : "Newton's method does not converge";
+  throw NumericalError(fmt::format(
+      "no step of soft grains down to dt = {:.3g} s, halved {} times: {} in grain {}; use a smaller "
+      "time step, a finer grid or a larger tolerance",
+      dt, options.max_halvings, cause, failed_grain_));
 }
 
 ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& report) {
@@ -112,7 +108,8 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
     const double correction = correct() / mean_radius_;
     ++report.iterations;
     report.residual = correction;
-    if (!(correction < largest_correction)) failure = Failure::too_far;
+    if (!(correction < largest_correction))
+      failure = std::isfinite(correction) ? Failure::too_far : Failure::not_finite;
     if (correction < options.tolerance) break;
     if (iteration == options.max_iterations)
       failure = Failure::no_convergence;
@@ -147,7 +144,7 @@ ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, S
       const Wide entry = grains.node_mass(batch, i) * Wide(1 / (dt * dt)) + diagonal[i][0];
       A.add(i, i, {entry, 0.0, 0.0, entry});
     }
-    failed[b] = grain_in(batch, A.factor());
+    failed[b] = batch.grain_in(A.factor());
     if (failed[b] < 0) A.kept_inverse(compliance_[b]);
   });
   return none_failed(failed) ? Failure::none : Failure::indefinite_matrix;
@@ -159,7 +156,7 @@ ImplicitDynamics::Failure ImplicitDynamics::residual(double dt) {
   std::vector<int> failed(batches(), -1);
   parallel_for(batches(), [&](int b) {
     const GrainBatch& batch = grains.batches[b];
-    failed[b] = grain_in(batch, internal_force(grains, batch, force_[b]));
+    failed[b] = batch.grain_in(internal_force(grains, batch, force_[b]));
     if (failed[b] >= 0) return;
     WideVectors& r = force_[b];
     for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
@@ -242,14 +239,14 @@ ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& re
   std::vector<int> failed(batches(), -1);
   parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];
-    failed[b] = grain_in(batch, internal_force(grains, batch, force_[b]));
+    failed[b] = batch.grain_in(internal_force(grains, batch, force_[b]));
     for (std::size_t i = 0; i < batch.position.size(); ++i)
       batch.velocity[i] = Wide(1 / dt) * (batch.position[i] - start_[b][i]);
   });
   if (!none_failed(failed)) return Failure::inverted_point;
   balance_momentum(dt);
   grains.gather_outline(outline_.position);
-  add_work(dt);
+  add_work();
   std::vector<OutlineContact> found = neighbours_.detect(grains, outline_);
   impulse = carried_impulses(grains, contacts, impulse, found);
   contacts = std::move(found);

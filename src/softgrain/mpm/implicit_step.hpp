@@ -50,7 +50,7 @@ class ImplicitDynamics {
   WorkBudget work;                       ///< since the start
 
  private:
-  enum class Failure { none, inverted_point, indefinite_matrix, too_far, no_convergence };
+  enum class Failure { none, inverted_point, indefinite_matrix, not_finite, too_far, no_convergence };
 
   Failure try_step(double dt, SoftStepReport& report);
   Failure factor(double dt, double proximal, SoftStepReport& report);
@@ -59,8 +59,9 @@ class ImplicitDynamics {
   double correct();
   Failure finish(double dt, SoftStepReport& report);
   void balance_momentum(double dt);
-  void add_work(double dt);
+  void add_work();
   void take_back();
+  [[noreturn]] void give_up(Failure failure, double dt) const;
   std::vector<double> friction_of_contacts() const;
 
   double mean_radius_ = 0, smallest_radius_ = 0;

@@ -1,46 +1,68 @@
 #include "softgrain/mpm/lumped_contacts.hpp"
 
+#include <algorithm>
+
 namespace softgrain {
 
 LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, std::span<const Wall<2>> walls,
                                std::span<Vec<2>> velocity, std::span<const double> inverse_mass, double dt)
-    : contacts_(contacts), walls_(walls), velocity_(velocity), inverse_mass_(inverse_mass) {
-  for (int contact = 0; contact < size(); ++contact) {
-    const OutlineContact& c = contacts[contact];
-    weight_.push_back(c.weights());
-    double W = inverse_mass[c.vertex];
-    if (c.wall < 0)
-      for (std::size_t m = 0; m < 4; ++m)
-        W += weight_.back()[m] * weight_.back()[m] * inverse_mass[c.master[m]];
-    delassus_.push_back(W);
-    offset_.push_back(c.gap / dt - dot(c.normal, velocity_between(contact)));
+    : velocity_(velocity) {
+  rows_.reserve(contacts.size());
+  for (const OutlineContact& c : contacts) {
+    Row row;
+    row.vertex[0] = c.vertex;
+    row.normal = c.normal;
+    if (c.wall >= 0) {
+      row.offset = {-dot(c.normal, walls[c.wall].velocity),
+                    -dot(perpendicular(c.normal), walls[c.wall].velocity)};
+    } else {
+      const auto weight = c.weights();
+      row.count = 5;
+      for (std::size_t m = 0; m < 4; ++m) {
+        row.vertex[m + 1] = c.master[m];
+        row.weight[m + 1] = -weight[m];
+      }
+    }
+    for (int k = 0; k < row.count; ++k) {
+      row.answer[k] = row.weight[k] * inverse_mass[row.vertex[k]];
+      row.delassus += row.weight[k] * row.answer[k];
+    }
+    row.offset[0] += c.gap / dt - relative_velocity(row)[0];
+    rows_.push_back(row);
   }
 }
 
-Vec<2> LumpedContacts::velocity_between(int contact) const {
-  const OutlineContact& c = contacts_[contact];
-  Vec<2> u = velocity_[c.vertex];
-  if (c.wall >= 0) {
-    u -= walls_[c.wall].velocity;
-  } else {
-    for (std::size_t m = 0; m < 4; ++m) u -= weight_[contact][m] * velocity_[c.master[m]];
+Vec<2> LumpedContacts::relative_velocity(const Row& row) const {
+  Vec<2> u = velocity_[row.vertex[0]];
+  for (int k = 1; k < row.count; ++k) u += row.weight[k] * velocity_[row.vertex[k]];
+  return {dot(row.normal, u) + row.offset[0], dot(perpendicular(row.normal), u) + row.offset[1]};
+}
+
+void LumpedContacts::apply_impulse(const Row& row, const Vec<2>& dp) {
+  const Vec<2> P = dp[0] * row.normal + dp[1] * perpendicular(row.normal);
+  for (int k = 0; k < row.count; ++k) velocity_[row.vertex[k]] += row.answer[k] * P;
+}
+
+Violation LumpedContacts::sweep(std::span<Vec<2>> impulse, std::span<const double> friction,
+                                const SolverOptions& options) {
+  Violation violation;
+  for (int c = 0; c < size(); ++c) {
+    const Row& row = rows_[c];
+    Vec<2>& p = impulse[c];
+    const Vec<2> u = relative_velocity(row);
+    if (p[0] == 0 && u[0] >= 0) continue;
+    Vec<2> solved{std::max(0.0, p[0] - u[0] / row.delassus), 0};
+    if (const double most = friction[c] * solved[0]; most > 0)
+      solved[1] = std::clamp(p[1] - u[1] / row.delassus, -most, most);
+    const Vec<2> jump = row.delassus * (solved - p);
+    violation.add(dot(jump, jump), solved[0] > 0);
+    Vec<2> next = p + options.relaxation * (solved - p);
+    if (options.relaxation > 1) next = project_on_coulomb_cone(next, friction[c]);
+    const Vec<2> dp = next - p;
+    p = next;
+    apply_impulse(row, dp);
   }
-  return u;
-}
-
-Vec<2> LumpedContacts::relative_velocity(int contact) const {
-  const Vec<2>& n = contacts_[contact].normal;
-  const Vec<2> u = velocity_between(contact);
-  return {dot(n, u) + offset_[contact], dot(perpendicular(n), u)};
-}
-
-void LumpedContacts::apply_impulse(int contact, const Vec<2>& dp) {
-  const OutlineContact& c = contacts_[contact];
-  const Vec<2> P = impulse_vector(c, dp);
-  velocity_[c.vertex] += inverse_mass_[c.vertex] * P;
-  if (c.wall >= 0) return;
-  for (std::size_t m = 0; m < 4; ++m)
-    velocity_[c.master[m]] -= weight_[contact][m] * inverse_mass_[c.master[m]] * P;
+  return violation;
 }
 
 }  // namespace softgrain

@@ -1,6 +1,7 @@
 #include "softgrain/mpm/outline_contacts.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,9 +12,9 @@
 namespace softgrain {
 namespace {
 
-// In units of the mean segment: contacts are kept up to this gap, and candidates until a vertex moved half
-// the skin.
-constexpr double margin_share = 0.5;
+// In units of the mean segment: candidates hold all contacts up to this gap until a vertex moved half the
+// skin.
+constexpr double largest_margin = 0.5;
 constexpr double skin_share = 0.5;
 
 /// Neighbour of a vertex along its own outline.
@@ -44,50 +45,65 @@ std::array<int, 4> span_from(const SoftGrains& grains, int first) {
   return {previous_vertex(grains, first), first, second, next_vertex(grains, second)};
 }
 
-/// Point of an outline and its derivatives by xi.
-struct CurvePoint {
-  CurvePoint(std::span<const Vec<2>> position, const std::array<int, 4>& vertices, double xi) {
-    const CurveWeights w = curve_weights(xi);
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Vec<2>& x = position[vertices[k]];
-      place += w.value[k] * x;
-      tangent += w.slope[k] * x;
-      second += w.curvature[k] * x;
-    }
+/// The curve of a span as a polynomial, c(xi) = a + xi (b + xi (c + xi d)).
+class SpanCurve {
+ public:
+  SpanCurve(std::span<const Vec<2>> position, const std::array<int, 4>& vertices)
+      : start_(position[vertices[1]]), end_(position[vertices[2]]) {
+    const Vec<2>&x_0 = position[vertices[0]], &x_3 = position[vertices[3]];
+    b_ = 0.5 * (end_ - x_0);
+    d_ = 0.5 * (x_3 - x_0) + 1.5 * (start_ - end_);
+    c_ = end_ - start_ - b_ - d_;
   }
-  Vec<2> place, tangent, second;
+  Vec<2> place(double xi) const { return start_ + xi * (b_ + xi * (c_ + xi * d_)); }
+  Vec<2> tangent(double xi) const { return b_ + xi * (2.0 * c_ + 3 * xi * d_); }
+
+  /// Where in [0, 1] it is closest to x: the root of (x - c) . c', by Newton's method inside a bracket.
+  double closest_to(const Vec<2>& x) const {
+    const Vec<2> chord = end_ - start_;
+    double low = 0, high = 1;
+    double xi = std::clamp(dot(x - start_, chord) / dot(chord, chord), 0.0, 1.0);
+    for (int pass = 0; pass < 50; ++pass) {
+      const Vec<2> d = x - place(xi), t = tangent(xi);
+      const double descent = dot(d, t), slope = dot(t, t) - dot(d, 2.0 * c_ + 6 * xi * d_);
+      (descent > 0 ? low : high) = xi;
+      const double newton = xi + descent / slope;
+      const bool trusted = slope > 0 && newton >= low && newton <= high;
+      const double step = (trusted ? newton : (low + high) / 2) - xi;
+      xi += step;
+      if (std::abs(step) < (trusted ? 1e-7 : 1e-13)) break;  // Newton's error is the square of its step
+    }
+    return xi;
+  }
+
+ private:
+  Vec<2> start_, end_, b_, c_, d_;
 };
 
-/// Where in [0, 1] a span is closest to x: the root of (x - c) . c', by Newton's method inside a bracket.
-double closest_share(std::span<const Vec<2>> position, const std::array<int, 4>& vertices, const Vec<2>& x) {
-  const Vec<2> chord = position[vertices[2]] - position[vertices[1]];
-  double low = 0, high = 1;
-  double xi = std::clamp(dot(x - position[vertices[1]], chord) / dot(chord, chord), 0.0, 1.0);
-  for (int pass = 0; pass < 50; ++pass) {
-    const CurvePoint c(position, vertices, xi);
-    const Vec<2> d = x - c.place;
-    const double descent = dot(d, c.tangent), slope = dot(c.tangent, c.tangent) - dot(d, c.second);
-    (descent > 0 ? low : high) = xi;
-    const double newton = xi + descent / slope;
-    const double next = slope > 0 && newton >= low && newton <= high ? newton : (low + high) / 2;
-    if (std::abs(next - xi) < 1e-13) return next;
-    xi = next;
-  }
-  return xi;
+/// True if a slave at x is surely more than `margin` outside the outline about its nearest vertex: the place
+/// that it faces is at most about half a segment from that vertex.
+bool surely_outside(const SoftGrains& grains, std::span<const Vec<2>> position, const Vec<2>& x, int nearest,
+                    double margin) {
+  const Vec<2>& vertex = position[nearest];
+  const Vec<2>&before = position[previous_vertex(grains, nearest)],
+        &after = position[next_vertex(grains, nearest)];
+  const double height = dot(x - vertex, perpendicular(before - after));  // times |after - before|
+  const double reach = margin + 0.6 * std::max(norm(after - vertex), norm(before - vertex));
+  return height > reach * norm(after - before);
 }
 
 /// The place of the master's outline, near its vertex `nearest`, that a slave faces.
 OutlineContact facing_curve(const SoftGrains& grains, const OutlineState& state, int slave, int nearest) {
   const Vec<2>& x = state.position[slave];
   OutlineContact contact{.vertex = slave, .master = span_from(grains, nearest)};
-  const CurvePoint vertex(state.position, contact.master, 0);
-  if (dot(x - vertex.place, vertex.tangent) < 0)
+  const Vec<2> tangent = state.position[contact.master[2]] - state.position[contact.master[0]];
+  if (dot(x - state.position[nearest], tangent) < 0)
     contact.master = span_from(grains, previous_vertex(grains, nearest));
-  contact.share = closest_share(state.position, contact.master, x);
-  const CurvePoint c(state.position, contact.master, contact.share);
-  contact.normal =
-      (-1 / norm(c.tangent)) * perpendicular(c.tangent);  // outward of a counter-clockwise outline
-  contact.gap = dot(x - c.place, contact.normal);
+  const SpanCurve curve(state.position, contact.master);
+  contact.share = curve.closest_to(x);
+  const Vec<2> t = curve.tangent(contact.share);
+  contact.normal = (-1 / norm(t)) * perpendicular(t);  // outward of a counter-clockwise outline
+  contact.gap = dot(x - curve.place(contact.share), contact.normal);
   contact.slip = dot(perpendicular(contact.normal), relative_displacement(contact, state));
   return contact;
 }
@@ -126,11 +142,9 @@ std::tuple<int, int, int> identity(const SoftGrains& grains, const OutlineContac
 
 }  // namespace
 
-CurveWeights curve_weights(double xi) {
+std::array<double, 4> curve_weights(double xi) {
   const double a = xi * xi, b = a * xi;
-  return {{-xi / 2 + a - b / 2, 1 - 2.5 * a + 1.5 * b, xi / 2 + 2 * a - 1.5 * b, (b - a) / 2},
-          {-0.5 + 2 * xi - 1.5 * a, -5 * xi + 4.5 * a, 0.5 + 4 * xi - 4.5 * a, 1.5 * a - xi},
-          {2 - 3 * xi, -5 + 9 * xi, 4 - 9 * xi, 3 * xi - 1}};
+  return {-xi / 2 + a - b / 2, 1 - 2.5 * a + 1.5 * b, xi / 2 + 2 * a - 1.5 * b, (b - a) / 2};
 }
 
 bool OutlineNeighbours::moved_far(const SoftGrains& grains, const OutlineState& state) const {
@@ -151,7 +165,7 @@ void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineS
   double longest = 0;
   for (int v = 0; v < grains.outline_size(); ++v)
     longest = std::max(longest, norm(state.position[next_vertex(grains, v)] - state.position[v]));
-  const double reach = longest + (margin_share + skin_share) * segment_;
+  const double reach = longest + (largest_margin + skin_share) * segment_;
   const CellGrid<2> grid(state.position, reach);
   std::vector<Nearest> near;
   for (int v = 0; v < grains.outline_size(); ++v) {
@@ -175,9 +189,11 @@ void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineS
   }
 }
 
-std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, const OutlineState& state) {
+std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, const OutlineState& state,
+                                                      double margin) {
+  assert(margin <= largest_margin);
   if (moved_far(grains, state)) find_candidates(grains, state);
-  const double margin = margin_share * segment_;
+  margin *= segment_;
   std::vector<OutlineContact> contacts;
   auto candidate = candidates_.begin();
   for (int v = 0; v < grains.outline_size(); ++v) {
@@ -190,6 +206,7 @@ std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, 
       candidate->nearest = nearest_vertex(grains, state.position, v, candidate->nearest);
       const Vec<2> d = state.position[v] - state.position[candidate->nearest];
       if (dot(d, d) > 9 * segment_ * segment_) continue;
+      if (surely_outside(grains, state.position, state.position[v], candidate->nearest, margin)) continue;
       const OutlineContact contact = facing_curve(grains, state, v, candidate->nearest);
       if (contact.gap < margin) contacts.push_back(contact);
     }
@@ -209,8 +226,10 @@ Vec<2> relative_displacement(const OutlineContact& contact, const OutlineState& 
 double gap_now(const OutlineContact& contact, const OutlineState& state) {
   const Vec<2>& x = state.position[contact.vertex];
   if (contact.wall >= 0) return dot(x - state.walls[contact.wall].point, contact.normal);
-  const CurvePoint c(state.position, contact.master, closest_share(state.position, contact.master, x));
-  return -dot(x - c.place, perpendicular(c.tangent)) / norm(c.tangent);
+  const SpanCurve curve(state.position, contact.master);
+  const double xi = curve.closest_to(x);
+  const Vec<2> t = curve.tangent(xi);
+  return -dot(x - curve.place(xi), perpendicular(t)) / norm(t);
 }
 
 std::vector<Vec<2>> carried_impulses(const SoftGrains& grains, std::span<const OutlineContact> old,

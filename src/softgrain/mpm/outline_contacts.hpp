@@ -11,10 +11,7 @@ namespace softgrain {
 /// The outline of a grain is the smooth closed curve through its vertices (uniform Catmull-Rom): between x_1
 /// and x_2, with their neighbours x_0 and x_3 along the outline,
 ///   c(xi) = sum_k w_k(xi) x_k,  xi in [0, 1].
-struct CurveWeights {
-  std::array<double, 4> value, slope, curvature;  ///< w_k, dw_k/dxi, d^2w_k/dxi^2
-};
-CurveWeights curve_weights(double xi);
+std::array<double, 4> curve_weights(double xi);
 
 /// An outline vertex (the slave) against another grain's outline (the master), or against a wall. Both grains
 /// of a pair bring their vertices, so that neither outline sinks between the vertices of the other.
@@ -28,7 +25,7 @@ struct OutlineContact {
   double slip = 0;  ///< tangential displacement of slave against master since the start of the step [m]
 
   /// Weights of the master's vertices.
-  std::array<double, 4> weights() const { return curve_weights(share).value; }
+  std::array<double, 4> weights() const { return curve_weights(share); }
 };
 
 /// Where the outlines are, and where they were at the start of the step.
@@ -43,8 +40,10 @@ struct OutlineState {
 /// O(vertices).
 class OutlineNeighbours {
  public:
-  /// All contacts with gap < half a segment, sorted by (vertex, master grain or wall).
-  std::vector<OutlineContact> detect(const SoftGrains& grains, const OutlineState& state);
+  /// All contacts with gap < margin, sorted by (vertex, master grain or wall); the margin is in units of the
+  /// mean segment of the outlines, at most 0.5.
+  std::vector<OutlineContact> detect(const SoftGrains& grains, const OutlineState& state,
+                                     double margin = 0.5);
 
  private:
   /// A slave vertex, and the vertex of a master grain that was nearest to it.

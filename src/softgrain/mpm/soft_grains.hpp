@@ -22,6 +22,12 @@ struct GrainBatch {
   Wide radius = 1.0;                  ///< R [m]
   WideVectors position;               ///< (nodes) x_i [m]
   WideVectors velocity;               ///< (nodes) v_i [m/s]
+  /// First grain among the lanes whose bits are set, -1 if none holds a grain.
+  int grain_in(unsigned lanes) const {
+    for (int lane = 0; lane < Wide::size; ++lane)
+      if ((lanes >> lane & 1u) != 0 && grain[lane] >= 0) return grain[lane];
+    return -1;
+  }
 };
 
 /// One grain as it is placed: a shape, its size, and where it lies.

@@ -89,14 +89,6 @@ double total_area(std::span<const Vec<2>> outline, std::span<const int> begin) {
   return area;
 }
 
-double coordination_number(std::vector<std::pair<int, int>> pairs, int grains) {
-  for (auto& [a, b] : pairs)
-    if (a > b) std::swap(a, b);
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  return 2.0 * static_cast<double>(pairs.size()) / grains;
-}
-
 std::vector<Vec<2>> disk_outline(std::span<const Vec<2>> position, std::span<const double> radius,
                                  double probe) {
   std::vector<Vec<2>> outline;
