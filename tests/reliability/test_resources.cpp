@@ -36,6 +36,13 @@ TEST_CASE("a case too large for the machine is refused before anything is writte
   CHECK(forced.err.find("out of memory") != std::string::npos);
 }
 
+TEST_CASE("a run that is refused leaves nothing behind") {
+  const Workshop workshop;
+  const TinyCase tiny{"full", "compaction-mpm", {"sample.grains=4", "sample.packing_fraction=0.9"}};
+  CHECK(run_tiny(workshop, tiny, "deep/out").exit_code == 2);
+  CHECK_FALSE(std::filesystem::exists(workshop.path("deep")));
+}
+
 TEST_CASE("the disk that a run takes is what the estimate says, to a factor of two and a half") {
   for (const TinyCase& tiny : tiny_cases()) {
     if (tiny.source.starts_with('/')) continue;

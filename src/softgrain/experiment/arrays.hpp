@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ Array to_array(std::span<const Vec<N>> rows) {
   return {N, std::move(values)};
 }
 
-/// The inverse, into `rows`, whose size the array must have: IoError otherwise, naming the array.
+/// The inverse, into `rows`. Raises IoError, naming the array, unless it has this size and finite numbers.
 template <int N>
 void from_array(const Checkpoint& checkpoint, const std::string& name, std::vector<Vec<N>>& rows) {
   const auto found = checkpoint.arrays.find(name);
@@ -27,6 +28,9 @@ void from_array(const Checkpoint& checkpoint, const std::string& name, std::vect
   if (values == nullptr || values->size() != N * rows.size())
     throw IoError(fmt::format("the checkpoint has no array '{}' of {} rows: it belongs to another case", name,
                               rows.size()));
+  for (const double value : *values)
+    if (!std::isfinite(value))
+      throw IoError(fmt::format("the checkpoint's array '{}' holds {}", name, value));
   for (std::size_t i = 0; i < rows.size(); ++i)
     for (int k = 0; k < N; ++k) rows[i][k] = (*values)[N * i + k];
 }

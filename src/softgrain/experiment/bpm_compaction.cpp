@@ -68,10 +68,10 @@ void BpmCompaction::judge(const StepReport& report) {
   if (report.overlap_mean > close_packing_overlap && solid_fraction() > close_packing_fraction)
     drive_.state.ended = true;
   else if (report.overlap_mean > largest_overlap)
-    throw NumericalError(
-        fmt::format("step {}: primaries overlap by {:.2g} of their radius in the mean, far from their close "
-                    "packing; use a smaller time.step or more solver.max_sweeps",
-                    step_, report.overlap_mean));
+    throw NumericalError(fmt::format(
+        "primaries overlap by {:.2g} of their radius in the mean, far from their close packing; use "
+        "a smaller time.step or more solver.max_sweeps",
+        report.overlap_mean));
 }
 
 std::string BpmCompaction::early_end() const {

@@ -52,10 +52,10 @@ double BpmCompression::sigma_I() const { return case_.bpm.attraction / mean_dist
 void BpmCompression::judge(const StepReport& report) {
   if (report.overlap_mean > largest_overlap) {
     throw NumericalError(
-        fmt::format("step {}: primaries overlap by {:.2g} of their radius in the mean, so the contact "
-                    "problem has no solution; use a "
-                    "smaller time.step or more solver.max_sweeps, or stop at a smaller loading.max_strain",
-                    step_, report.overlap_mean));
+        fmt::format("primaries overlap by {:.2g} of their radius in the mean, so the contact problem has no "
+                    "solution; use a smaller time.step or more solver.max_sweeps, or stop at a smaller "
+                    "loading.max_strain",
+                    report.overlap_mean));
   }
 }
 

@@ -12,6 +12,25 @@
 #include "softgrain/observe/outlines.hpp"
 
 namespace softgrain {
+namespace {
+
+/// Beyond this root mean square of a grain's motion in a step, over its radius, the step was far too long.
+constexpr double largest_motion = 0.5;
+
+/// First grain that moves further than that in dt, or not by a number; -1 if none does.
+int runaway_grain(const SoftGrains& grains, double dt) {
+  for (const GrainBatch& batch : grains.batches) {
+    Wide sum = 0.0;
+    for (const Vec<2, Wide>& v : batch.velocity) sum += dot(v, v);
+    const double nodes = static_cast<double>(batch.velocity.size());
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+      if (!(dt * std::sqrt(sum[lane] / nodes) < largest_motion * batch.radius[lane]))
+        return batch.grain[lane];
+  }
+  return -1;
+}
+
+}  // namespace
 
 template <class Dynamics>
 MpmSimulation<Dynamics>::MpmSimulation(Dynamics dynamics, WallDrive drive, double dt)
@@ -32,6 +51,9 @@ StepReport MpmSimulation<Dynamics>::step() {
   for (int w = 0; w < static_cast<int>(dynamics_.walls.size()); ++w)
     dynamics_.walls[w].velocity = drive_.velocity(dynamics_.walls[w], w, step_);
   const SoftStepReport soft = dynamics_.step(dt_);
+  if (const int grain = runaway_grain(dynamics_.grains, dt_); grain >= 0)
+    throw NumericalError(
+        fmt::format("grain {} moves by more than half its radius in a step; use a smaller time step", grain));
   ++step_;
   for (std::size_t w = 0; w < dynamics_.walls.size(); ++w)
     sums_.impulse[w] -= dot(dynamics_.wall_impulse(static_cast<int>(w)), dynamics_.walls[w].normal);

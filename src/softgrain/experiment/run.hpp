@@ -22,7 +22,8 @@ class Recorder {
   virtual bool after_step(Simulation& simulation, const StepReport& step, const RunReport& run) = 0;
 };
 
-/// The loop: diametral compression, compaction and shear are the same loop along another path.
+/// The loop: diametral compression, compaction and shear are the same loop along another path. A
+/// NumericalError gets the number of its step.
 RunReport run(Simulation& simulation, Recorder& recorder, RunReport report = {});
 
 }  // namespace softgrain

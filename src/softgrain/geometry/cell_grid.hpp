@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "softgrain/core/error.hpp"
 #include "softgrain/math/vec.hpp"
 
 namespace softgrain {
@@ -12,12 +13,15 @@ namespace softgrain {
 template <int Dim>
 class CellGrid {
  public:
-  /// Cells at least `reach` [m] wide, and not many more cells than points.
+  /// Cells at least `reach` [m] wide, and not many more cells than points. Raises NumericalError unless all
+  /// positions are finite.
   CellGrid(std::span<const Vec<Dim>> position, double reach) : position_(position) {
     if (position.empty()) return;
     Vec<Dim> high = low_ = position[0];
     for (const Vec<Dim>& x : position) {
       for (int k = 0; k < Dim; ++k) low_[k] = std::min(low_[k], x[k]), high[k] = std::max(high[k], x[k]);
+      if (!std::isfinite(dot(x, x)))
+        throw NumericalError("a position is not finite; use a smaller time step");
     }
     width_ = reach;
     while (count_cells(high) > 4.0 * static_cast<double>(position.size()) + 64) width_ *= 2;

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <cstring>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "softgrain/core/error.hpp"
 
@@ -82,8 +84,11 @@ std::vector<SnapshotFile> list_snapshots(const RunPaths& paths) {
   return snapshots;
 }
 
-RunDirectory::RunDirectory(const fs::path& root, IfNotEmpty if_not_empty) : paths_{root} {
+// By way of another constructor, so that the destructor tidies up after a refusal.
+RunDirectory::RunDirectory(const fs::path& root, IfNotEmpty if_not_empty) : RunDirectory(root) {
   require(!fs::exists(root) || fs::is_directory(root), "{} is not a directory", root.string());
+  for (fs::path folder = root; !folder.empty() && !fs::exists(folder); folder = folder.parent_path())
+    made_.push_back(folder);
   std::error_code error;
   fs::create_directories(root, error);
   if (error) throw IoError(fmt::format("{}: cannot create: {}", root.string(), error.message()));
@@ -95,9 +100,23 @@ RunDirectory::RunDirectory(const fs::path& root, IfNotEmpty if_not_empty) : path
   remove_unfinished(paths_);
 }
 
+RunDirectory::~RunDirectory() {
+  if (std::error_code unknown; !fs::exists(paths_.run_file(), unknown)) leave_nothing();
+}
+
+void RunDirectory::leave_nothing() const {
+  std::error_code ignored;  // what is not empty stays
+  if (lock_.number() >= 0) fs::remove(paths_.lock_file(), ignored);
+  for (const fs::path& folder : made_) fs::remove(folder, ignored);
+}
+
 void RunDirectory::lock() {
-  lock_ = open_file(paths_.lock_file(), O_RDWR | O_CREAT);
-  refuse_if_in_use(paths_, !try_lock(lock_, paths_, LOCK_EX), process_named_in(lock_));
+  Descriptor file = open_file(paths_.lock_file(), O_RDWR | O_CREAT);
+  struct stat status {};
+  const bool ours = try_lock(file, paths_, LOCK_EX) && ::fstat(file.number(), &status) == 0 &&
+                    status.st_nlink > 0;  // 0: removed by the run that had it
+  refuse_if_in_use(paths_, !ours, process_named_in(file));
+  lock_ = std::move(file);
   const std::string process = fmt::format("{}\n", ::getpid());
   if (::ftruncate(lock_.number(), 0) != 0 ||
       ::pwrite(lock_.number(), process.data(), process.size(), 0) != static_cast<ssize_t>(process.size()))

@@ -32,11 +32,14 @@ struct SnapshotFile {
 std::vector<SnapshotFile> list_snapshots(const RunPaths& paths);
 
 /// A run's directory, made when missing, and ours alone until this object goes: a second run is refused
-/// (UsageError, naming the other's process).
+/// (UsageError, naming the other's process). Where no run was begun (no run.json), nothing of it stays.
 class RunDirectory {
  public:
   enum class IfNotEmpty { refuse, keep };
   RunDirectory(const std::filesystem::path& root, IfNotEmpty if_not_empty);
+  RunDirectory(const RunDirectory&) = delete;
+  RunDirectory& operator=(const RunDirectory&) = delete;
+  ~RunDirectory();
 
   const RunPaths& paths() const { return paths_; }
 
@@ -44,9 +47,12 @@ class RunDirectory {
   void clear() const;
 
  private:
+  explicit RunDirectory(const std::filesystem::path& root) : paths_{root} {}
   void lock();
+  void leave_nothing() const;
 
   RunPaths paths_;
+  std::vector<std::filesystem::path> made_;  ///< folders that were not there before, innermost first
   Descriptor lock_;
 };
 

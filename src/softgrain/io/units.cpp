@@ -129,7 +129,7 @@ class UnitParser {
     int value = 1;
     const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
     require(!marked || error == std::errc(), "cannot read the unit '{}': a whole power is missing", text_);
-    require(std::abs(value) <= 9, "cannot read the unit '{}': the power is out of range", text_);
+    require(-9 <= value && value <= 9, "cannot read the unit '{}': the power is out of range", text_);
     if (error == std::errc()) rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
     return value;
   }

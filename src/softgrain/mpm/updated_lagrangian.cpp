@@ -128,7 +128,8 @@ void UpdatedLagrangianDynamics::find_contacts(LatticeContacts& system, double dt
     for (const Vec<2>& x : grains[g].outline) {
       lattice_.vertex_weights(g, x, least_outline_share * full_cell, outline_.weights.emplace_back());
       if (outline_.weights.back().empty())
-        throw NumericalError(fmt::format("the outline of grain {} has left its material points", g));
+        throw NumericalError(
+            fmt::format("the outline of grain {} has left its material points; use a smaller time step", g));
     }
     outline_.first_vertex.push_back(static_cast<int>(outline_.weights.size()));
   }
@@ -143,6 +144,7 @@ void UpdatedLagrangianDynamics::find_contacts(LatticeContacts& system, double dt
 void UpdatedLagrangianDynamics::move_points(double dt) {
   for (int g = 0; g < static_cast<int>(grains.size()); ++g) {
     PointGrain& grain = grains[g];
+    double squares = 0;  // of velocities
     for (int p = 0; p < grain.points(); ++p) {
       Vec<2> v, dv;
       Mat<2> L;  // sum_i v_i (x) dN_i/dx
@@ -157,7 +159,10 @@ void UpdatedLagrangianDynamics::move_points(double dt) {
       grain.velocity[p] = (1 - options.pic_share) * (grain.velocity[p] + dv) + options.pic_share * v;
       grain.position[p] += dt * v;
       grain.F[p] += dt * (L * grain.F[p]);
+      squares += dot(v, v);
     }
+    if (!std::isfinite(squares))
+      throw NumericalError(fmt::format("a velocity of grain {} is not finite; use a smaller time step", g));
   }
 }
 

@@ -18,12 +18,27 @@ using IfNotEmpty = RunDirectory::IfNotEmpty;
 TEST_CASE("a run makes its directory, and refuses one that holds something without leaving a trace") {
   const test::TemporaryDirectory directory;
   const fs::path fresh = directory.path() / "a" / "b";
-  { const RunDirectory made(fresh, IfNotEmpty::refuse); }
-  CHECK(fs::is_directory(fresh));
-  CHECK_NOTHROW(RunDirectory(fresh, IfNotEmpty::refuse));  // its own lock file does not count
+  {
+    const RunDirectory made(fresh, IfNotEmpty::refuse);
+    CHECK(fs::exists(fresh / ".lock"));
+    directory.file("a/b/run.json", "{}");
+  }
+  CHECK(fs::exists(fresh / ".lock"));
+  fs::remove(fresh / "run.json");
+  CHECK_NOTHROW(RunDirectory(fresh, IfNotEmpty::refuse));  // a lock file alone does not count
   directory.file("notes.txt", "mine");
   CHECK_THROWS_AS(RunDirectory(directory.path(), IfNotEmpty::refuse), UsageError);
   CHECK_FALSE(fs::exists(directory.path() / ".lock"));
+}
+
+TEST_CASE("a run that was refused before it began leaves nothing, and what was there before") {
+  const test::TemporaryDirectory directory;
+  { const RunDirectory made(directory.path() / "a" / "b", IfNotEmpty::refuse); }
+  CHECK_FALSE(fs::exists(directory.path() / "a"));
+  directory.file("notes.txt", "mine");
+  { const RunDirectory held(directory.path(), IfNotEmpty::keep); }
+  CHECK_FALSE(fs::exists(directory.path() / ".lock"));
+  CHECK(fs::exists(directory.path() / "notes.txt"));
 }
 
 TEST_CASE("a second run in the directory is refused and told the first one's process") {
@@ -60,7 +75,7 @@ TEST_CASE("clearing a run's directory removes a run's results and nothing of the
   for (const auto& entry : fs::recursive_directory_iterator(directory.path()))
     if (entry.is_regular_file()) left.push_back(entry.path().filename());
   std::sort(left.begin(), left.end());
-  CHECK(left == std::vector<std::string>{".lock", "mine.h5", "paper.tex", "view.pvsm"});
+  CHECK(left == std::vector<std::string>{"mine.h5", "paper.tex", "view.pvsm"});
 }
 
 TEST_CASE("snapshots are listed by their step, however many digits it has") {

@@ -81,6 +81,7 @@ TEST_CASE("what is no number or no unit is refused") {
   CHECK(mentions(refusal("5", length), "has no unit"));
   CHECK(mentions(refusal("5 m^99", length), "the power is out of range"));
   CHECK(mentions(refusal("5 (((m^9)^9)^9)^9", length), "the power is out of range"));
+  CHECK(mentions(refusal("5 1/m^-2147483648", length), "the power is out of range"));
   for (const char* text : {"",
                            " ",
                            "mm",
