@@ -29,11 +29,21 @@ check: ## format, layers, self-contained headers, clang-tidy
 	tools/check_viewer
 	tools/check_tidy
 
-torture: ## the long forms of the reliability tests: 100 kills, every call failing in turn
-	@tools/install_dependencies.sh
+torture: ## long forms of the reliability tests, fuzzers, sanitizers, builds compared (hours)
+	@tools/install_dependencies.sh --with torture
 	cmake --preset dev
 	cmake --build --preset dev
-	SOFTGRAIN_TORTURE=1 ctest --preset dev -L reliability --timeout 3600
+	SOFTGRAIN_TORTURE=1 ctest --preset dev -L reliability --timeout 7200
+	cmake --preset fuzz
+	cmake --build --preset fuzz
+	tests/fuzz/run
+	tools/compare_builds
+	cmake --preset asan
+	cmake --build --preset asan
+	ctest --preset asan -L "unit|verification" --timeout 7200
+	cmake --preset tsan
+	cmake --build --preset tsan
+	ctest --preset tsan -L unit --timeout 7200
 
 bench: ## measures the speed, ours and the peers'
 	@tools/install_dependencies.sh --with bench
