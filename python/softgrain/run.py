@@ -158,12 +158,14 @@ def _arrays(scene, name):
 def _read_series(path):
     """Columns and units of a table with the header `name[unit],...`; none before its first row.
 
-    A last line without its newline is torn and left out."""
+    A last line without its newline is torn and left out. Raises ValueError for a row that is not as many numbers."""
     if not path.exists():
         return {}, {}
     complete_lines = path.read_text().split("\n")[:-1]
     header, *rows = [line.split(",") for line in complete_lines] or [[]]
     names = [cell.split("[")[0].strip() for cell in header]
     units = [cell.partition("[")[2].rstrip("] ") for cell in header]
+    if any(len(row) != len(names) for row in rows):
+        raise ValueError(f"'{path}' is damaged: a row has not {len(names)} numbers")
     columns = np.array(rows, float).T  # no row, no column
     return dict(zip(names, columns)), dict(zip(names, units))

@@ -37,6 +37,26 @@ class Reading(unittest.TestCase):
             (self.folder / "series.csv").write_text("step,strain,stress_top[Pa]\n0,0,0\n10,0.5,2e5\n" + torn)
             self.assertEqual(softgrain.open(self.folder).series["strain"].tolist(), [0, 0.5])
 
+    def test_whatever_happened_to_a_series_it_is_read_whole_or_refused(self):
+        synthetic.write_run(self.folder, snapshots=0)
+        series = self.folder / "series.csv"
+        whole, random = series.read_bytes()[:3000], np.random.default_rng(2)
+        refused = 0
+        for _ in range(300):
+            damaged, at, length = bytearray(whole), random.integers(len(whole)), random.integers(1, 30)
+            match random.integers(4):
+                case 0: damaged[at] ^= 1 << random.integers(8)
+                case 1: del damaged[at:at + length]
+                case 2: damaged[at:at] = whole[length:3 * length]
+                case 3: damaged[at:at + length] = random.bytes(length)
+            series.write_bytes(damaged)
+            try:
+                table = softgrain.open(self.folder).series
+                self.assertEqual(len({len(column) for column in table.values()}), 1)
+            except ValueError:
+                refused += 1
+        self.assertGreater(refused, 30)
+
     def test_a_run_that_has_only_begun_is_empty_but_readable(self):
         self.folder.mkdir()
         (self.folder / "case.toml").write_text("")
