@@ -72,6 +72,19 @@ class Cases(unittest.TestCase):
         self.assertIn("<th>strain</th><td>0.2 </td>", html)
         self.assertIn("<th>snapshots</th><td>1</td>", html)
 
+    def test_a_case_of_values_alone_sets_them_in_their_order(self):
+        case = softgrain.Case({"bpm": {"primaries": 60}, "loading.unload_at": [0.1]}).set("bpm.primaries", 80)
+        self.assertEqual(case.resolve()["words"],
+                         ["check", "/dev/null", "--set=loading.unload_at=[0.1]", "--set=bpm.primaries=80", "--json"])
+
+    def test_a_notebook_shows_what_a_case_sets_over_its_file_and_text_stays_text(self):
+        (self.folder / "a&b.toml").write_text('[contact]\nfriction = 0.5\n[grain]\nradius = "5 mm"\n')
+        html = softgrain.Case(self.folder / "a&b.toml").set("contact.friction", "<0.3>")._repr_html_()
+        self.assertIn("a&amp;b.toml</caption>", html)
+        self.assertIn("<th>contact.friction</th><td>&lt;0.3&gt;</td>", html)
+        self.assertIn("<th>grain.radius</th><td>5 mm</td>", html)
+        self.assertEqual(html.count("<tr>"), 2)
+
     def test_a_run_draws_its_own_figures(self):
         run = softgrain.open(synthetic.write_run(self.folder / "squeeze", snapshots=3))
         for figure in (run.plot.curve(), run.plot.grain(), run.plot.diagnostics()):

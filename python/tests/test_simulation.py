@@ -147,7 +147,10 @@ def test_ctrl_c_ends_a_run_between_two_steps_and_it_can_go_on():
     time.sleep(0.2)  # into the run
     process.send_signal(signal.SIGINT)
     sent = time.monotonic()
-    said, error = process.communicate(timeout=20)
+    try:
+        said, error = process.communicate(timeout=20)
+    finally:
+        process.kill()
     assert (said, error, process.returncode) == ("True 1.0\n", "", 0)
     assert time.monotonic() - sent < 5
 
@@ -255,13 +258,19 @@ def test_a_wrong_motion_is_refused_and_its_errors_come_back(case):
     with pytest.raises(RuntimeError, match="at work"):
         greedy.step()
     assert (not_finite.steps_done, broken.steps_done, greedy.steps_done) == (0, 0, 0)
+    late = softgrain.Simulation(case)
+    late.step()
+    with pytest.raises(softgrain.CaseError, match="before the first step"):
+        late.follow(1, lambda time: -1)
 
 
 def test_a_simulation_and_a_motion_that_know_each_other_can_go():
-    simulation = softgrain.Simulation(BPM, motion=lambda time: -0.1 * (simulation.strain < 1), duration=1e-3)
+    known = {}
+    simulation = softgrain.Simulation(BPM, motion=lambda time, known=known: -0.1 * (known["it"].strain < 1), duration=1e-3)
+    known["it"] = simulation
     simulation.step(3)
     gone = weakref.ref(simulation)
-    del simulation
+    del simulation, known
     gc.collect()
     assert gone() is None
 
