@@ -76,7 +76,7 @@ Compaction compact(const Options& options, double dt, double last, double mark) 
     mean_radius += grain.radius / 20;
   }
   SoftGrains grains(std::move(placed), make_law("neo_hookean", 1e7, 0.45), 990, false);
-  Dynamics dynamics(std::move(grains), test::box_walls(sample.side, speed), options);
+  Dynamics dynamics(std::move(grains), test::box_walls(sample.width, speed), options);
   Compaction result;
   std::vector<Vec<2>> x;
   double impulse = 0, duration = 0;
@@ -86,13 +86,13 @@ Compaction compact(const Options& options, double dt, double last, double mark) 
     for (int g = 0; g < dynamics.grains.size(); ++g)
       now +=
           polygon_area(std::span(x).subspan(dynamics.grains.outline_begin(g), shape->grid.outline_nodes()));
-    return now / (sample.side * dynamics.walls[1].point[1]);
+    return now / (sample.width * dynamics.walls[1].point[1]);
   };
-  const int steps = static_cast<int>(sample.side * (1 - std::exp(-last)) / (speed * dt));
+  const int steps = static_cast<int>(sample.width * (1 - std::exp(-last)) / (speed * dt));
   for (int k = 1; k <= steps; ++k) {
     const SoftStepReport report = dynamics.step(dt);
     result.rejected += report.rejected;
-    const double strain = std::log(sample.side / dynamics.walls[1].point[1]);
+    const double strain = std::log(sample.width / dynamics.walls[1].point[1]);
     if (std::abs(strain - mark) < 0.02) {
       impulse += dynamics.wall_impulse(1)[1] - dynamics.wall_impulse(0)[1];
       duration += dt;
@@ -104,7 +104,7 @@ Compaction compact(const Options& options, double dt, double last, double mark) 
     }
   }
   result.phi = phi();
-  result.stress_of_mark = impulse / 2 / duration / sample.side / 1e7;
+  result.stress_of_mark = impulse / 2 / duration / sample.width / 1e7;
   for (int g = 0; g < dynamics.grains.size(); ++g)
     result.simple = result.simple && is_simple_polygon(std::span(x).subspan(dynamics.grains.outline_begin(g),
                                                                             shape->grid.outline_nodes()));

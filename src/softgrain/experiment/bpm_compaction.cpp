@@ -55,7 +55,7 @@ BpmCompaction::BpmCompaction(const Case& c, BoxSample box)
     : BpmCompaction(c, box, fill_box(box, prepare_library(c), c)) {}
 
 BpmCompaction::BpmCompaction(const Case& c, BoxSample box, BpmSample sample)
-    : BpmSimulation(c, box_path(c, box.side, c.time.step), laws_of(c, sample), sample.particles,
+    : BpmSimulation(c, box_path(c, box.height, c.time.step), laws_of(c, sample), sample.particles,
                     friction_rule(c, sample.particles.grain), skin_of(sample)),
       box_(std::move(box)),
       begin_(std::move(sample.begin)),

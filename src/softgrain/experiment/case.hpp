@@ -77,6 +77,7 @@ struct Case {
     std::int64_t seed = 1;
     int grains = 20;                ///< in a box
     double packing_fraction = 0.7;  ///< of the undeformed grains in the box at the start
+    double aspect = 1;              ///< width over height of the box at the start
     double smallest_diameter = 1.4e-3,
            largest_diameter = 2.4e-3;  ///< of grains in a box [m], uniform between
   } sample;

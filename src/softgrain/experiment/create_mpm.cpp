@@ -39,11 +39,10 @@ MpmSetup setup_of(const Case& c) {
                             .centre = grain.centre,
                             .angle = grain.angle,
                             .velocity = {}});
-  const double side = sample.side;
   setup.walls = {{.point = {0, 0}, .normal = {0, 1}, .velocity = {}},
-                 {.point = {0, side}, .normal = {0, -1}, .velocity = {}},
+                 {.point = {0, sample.height}, .normal = {0, -1}, .velocity = {}},
                  {.point = {0, 0}, .normal = {1, 0}, .velocity = {}},
-                 {.point = {side, 0}, .normal = {-1, 0}, .velocity = {}}};
+                 {.point = {sample.width, 0}, .normal = {-1, 0}, .velocity = {}}};
   return setup;
 }
 

@@ -21,9 +21,9 @@ double smallest_radius(const Case& c) {
 double travel(const Case& c) {
   const double mean_diameter = (c.sample.smallest_diameter + c.sample.largest_diameter) / 2;
   const double grain_area = std::numbers::pi / 4 * mean_diameter * mean_diameter;
-  const double side = std::sqrt(grains(c) * grain_area / c.sample.packing_fraction);
+  const double height = std::sqrt(grains(c) * grain_area / c.sample.packing_fraction / c.sample.aspect);
   const auto travel_to = [&](double strain) {
-    return is_diametral(c) ? plate_travel(strain, c.grain.radius) : -side * std::expm1(-strain);
+    return is_diametral(c) ? plate_travel(strain, c.grain.radius) : -height * std::expm1(-strain);
   };
   const double last = is_diametral(c)
                           ? c.loading.max_strain

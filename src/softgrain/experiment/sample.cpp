@@ -17,10 +17,11 @@ enum Stream : std::uint32_t { diameters, places, angles };
 double push_apart(BoxSample& sample, double clearance, double widest) {
   double worst = 0;
   std::vector<Vec<2>> centres;
+  const Vec<2> size{sample.width, sample.height};
   for (PlacedGrain& grain : sample.grains) {
     const double reach = (1 + clearance) * grain.radius;
     for (int k = 0; k < 2; ++k) {
-      const double inside = std::clamp(grain.centre[k], reach, sample.side - reach);
+      const double inside = std::clamp(grain.centre[k], reach, size[k] - reach);
       worst = std::max(worst, std::abs(inside - grain.centre[k]));
       grain.centre[k] = inside;
     }
@@ -47,6 +48,7 @@ BoxSample sample_box(const BoxSampleOptions& options) {
           "diameters must be positive and in order, got {} m and {} m", options.smallest, options.largest);
   require(options.packing_fraction > 0 && options.packing_fraction < 0.8,
           "the packing fraction of a random sample must be in (0, 0.8), got {}", options.packing_fraction);
+  require(options.aspect > 0, "the aspect of a box must be positive, got {}", options.aspect);
   BoxSample sample;
   double area = 0;
   for (int i = 0; i < options.grains; ++i) {
@@ -55,15 +57,18 @@ BoxSample sample_box(const BoxSampleOptions& options) {
     sample.grains.push_back({.centre = {}, .radius = diameter / 2});
     area += std::numbers::pi * diameter * diameter / 4;
   }
-  sample.side = std::sqrt(area / options.packing_fraction);
+  const double side = std::sqrt(area / options.packing_fraction);
+  sample.width = side * std::sqrt(options.aspect);
+  sample.height = side / std::sqrt(options.aspect);
   for (const PlacedGrain& grain : sample.grains)
-    require(2 * (1 + options.clearance) * grain.radius <= sample.side,
-            "a grain of diameter {} m has no room in a box of {} m; use a smaller sample.packing_fraction",
-            2 * grain.radius, sample.side);
+    require(2 * (1 + options.clearance) * grain.radius <= std::min(sample.width, sample.height),
+            "a grain of diameter {} m has no room in a box of {} m by {} m; use a smaller "
+            "sample.packing_fraction or a sample.aspect nearer to 1",
+            2 * grain.radius, sample.width, sample.height);
   for (int i = 0; i < options.grains; ++i) {
     sample.grains[i].angle = 2 * std::numbers::pi * random_uniform(options.seed, Stream::angles, i);
-    for (int k = 0; k < 2; ++k)
-      sample.grains[i].centre[k] = sample.side * random_uniform(options.seed, Stream::places, 2 * i + k);
+    sample.grains[i].centre = {sample.width * random_uniform(options.seed, Stream::places, 2 * i),
+                               sample.height * random_uniform(options.seed, Stream::places, 2 * i + 1)};
   }
   constexpr int most_passes = 100000;
   const double tolerance = 1e-3 * options.clearance * options.smallest;
@@ -79,6 +84,7 @@ BoxSample sample_box(const Case& c) {
                      .smallest = c.sample.smallest_diameter,
                      .largest = c.sample.largest_diameter,
                      .packing_fraction = c.sample.packing_fraction,
+                     .aspect = c.sample.aspect,
                      .seed = static_cast<std::uint64_t>(c.sample.seed)});
 }
 

@@ -14,16 +14,17 @@ struct PlacedGrain {
   double angle = 0;   ///< [rad] random orientation
 };
 
-/// A square box with corner (0, 0).
+/// A box with corner (0, 0).
 struct BoxSample {
-  double side = 0;  ///< [m]
+  double width = 0, height = 0;  ///< [m]
   std::vector<PlacedGrain> grains;
 };
 
 struct BoxSampleOptions {
   int grains = 300;
   double smallest = 1.4e-3, largest = 2.4e-3;  ///< diameters, uniform between [m]
-  double packing_fraction = 0.7;               ///< sum pi R^2 / side^2
+  double packing_fraction = 0.7;               ///< sum pi R^2 over the box's area
+  double aspect = 1;                           ///< width over height of the box
   double clearance = 0.02;                     ///< free distance round each grain, over its radius
   std::uint64_t seed = 1;
 };

@@ -108,6 +108,7 @@ std::vector<Key> all_keys() {
           "seed of the random numbers; another seed is another sample of the same grain"),
       KEY(sample.grains, "", from_to(1, 1e6), "grains in the box"),
       KEY(sample.packing_fraction, "", between(0, 0.8), "undeformed grain area over box area at the start"),
+      KEY(sample.aspect, "", from_to(0.01, 100), "width over height of the box at the start"),
       KEY(sample.smallest_diameter, "mm", positive(), "of the grains in the box, uniform between"),
       KEY(sample.largest_diameter, "mm", positive(), "of the grains in the box"),
 

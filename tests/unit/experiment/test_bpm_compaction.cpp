@@ -46,7 +46,7 @@ std::uint64_t hash_of(const BoxSample& sample) {
     std::memcpy(&bits, &value, sizeof bits);
     for (int byte = 0; byte < 8; ++byte) hash = (hash ^ ((bits >> (8 * byte)) & 255)) * 0x100000001b3ull;
   };
-  add(sample.side);
+  add(sample.width);
   for (const PlacedGrain& grain : sample.grains)
     for (const double value : {grain.centre[0], grain.centre[1], grain.radius, grain.angle}) add(value);
   return hash;
@@ -195,9 +195,9 @@ TEST_CASE("a packing is compacted until its primaries are close packed, whole, a
   CHECK(row["stress_top"] > 5e5);
   for (const Vec<2>& x : simulation.dynamics().particles.position) {
     CHECK(x[0] > 0);
-    CHECK(x[0] < simulation.sample().side);
+    CHECK(x[0] < simulation.sample().width);
     CHECK(x[1] > 0);
-    CHECK(x[1] < simulation.sample().side);
+    CHECK(x[1] < simulation.sample().height);
   }
 }
 
@@ -210,7 +210,7 @@ TEST_CASE("a packing at rest has the stress of its walls by Love and Weber, and 
   while (simulation.steps_done() < simulation.steps_planned() - last) simulation.step();
   auto row = row_of(simulation);
   REQUIRE(simulation.dynamics().particles.velocity.back() == Vec<2>{});
-  const double area = simulation.sample().side * row["wall_height"];
+  const double area = simulation.sample().width * row["wall_height"];
   Mat<2> sigma;
   while (!simulation.finished()) {
     simulation.step();

@@ -29,6 +29,8 @@ TEST_CASE("the estimate counts the steps of every path") {
   const double side = std::sqrt(c.sample.grains * 3.14159265 * 1e-6 / 0.5);
   const auto compaction = static_cast<double>(CompactionPath(c.loading, side, 1e-6, 0.5).steps());
   CHECK(estimate(c).steps == doctest::Approx(compaction).epsilon(1e-3));
+  c.sample.aspect = 4;  // half as high
+  CHECK(estimate(c).steps == doctest::Approx(compaction / 2).epsilon(1e-3));
 }
 
 TEST_CASE("half the time step doubles the steps and the hours") {

@@ -52,7 +52,7 @@ TEST_CASE("all four walls come in at half the speed, and the lid alone at the wh
 }
 
 TEST_CASE(
-    "an isotropic path ends where undeformed grains fill the square box as asked, and leaves out later "
+    "an isotropic path ends where undeformed grains fill the box as asked, and leaves out later "
     "turns") {
   Case::Loading loading{.wall_velocity = v, .max_strain = 0.4, .unload_at = {0.1, 0.3}};
   loading.max_packing_fraction = 0.9;
