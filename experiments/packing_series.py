@@ -89,16 +89,17 @@ def draw(path, records, label, phi, axis):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     plt.rcParams.update({"font.size": 8, "axes.linewidth": 0.6})
-    figure, panels = plt.subplots(1, 2, figsize=(6.6, 2.7), layout="constrained")
+    figure, panels = plt.subplots(1, 2, figsize=(7.8, 2.7), layout="constrained")
     names = list(dict.fromkeys(label(record) for record in records))
     for number, (colour, name) in enumerate(zip(COLOURS, names)):
         line = [record for record in records if label(record) == name]
         shift = 0.0015 * (number - (len(names) - 1) / 2)  # so that bars do not hide one another
         x = [(float(r[f"{phi}_from"]) + float(r[f"{phi}_to"])) / 2 + shift for r in line]
         for axes, key in zip(panels, ("stress_MPa", "z")):
-            axes.errorbar(x, [float(r[key]) for r in line], [float(r[f"{key}_deviation"]) for r in line], color=colour,
-                          linewidth=0.9, elinewidth=0.6, capsize=1.5, marker="o", markersize=2.5, label=name)
+            bars = [float(r[f"{key}_deviation"]) for r in line] if int(line[0]["seeds"]) > 1 else None
+            axes.errorbar(x, [float(r[key]) for r in line], bars, color=colour, linewidth=0.9, elinewidth=0.6, capsize=1.5,
+                          marker="o", markersize=2.5, label=name)
     panels[0].set(xlabel=axis, ylabel="vertical stress $\\sigma$ [MPa]", yscale="log")
     panels[1].set(xlabel=axis, ylabel="coordination number $Z$")
-    panels[0].legend(fontsize=6, frameon=False)
+    panels[1].legend(fontsize=6.5, frameon=False, loc="upper left", bbox_to_anchor=(1.01, 1))
     figure.savefig(path, dpi=160, metadata={"Software": None})

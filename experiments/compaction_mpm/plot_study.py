@@ -1,6 +1,7 @@
-"""Pictures of study.py: packings at four stages and the curves of all runs."""
+"""Pictures of study.py: packings at four stages, the curves of all runs, Z of 300 grains at two speeds."""
 import csv
 import pathlib
+import sys
 
 import h5py
 import matplotlib
@@ -9,7 +10,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import PolyCollection
 
-RESULTS = pathlib.Path(__file__).parent / "results"
+import packing_series
+
+HERE = pathlib.Path(__file__).resolve().parent
+RESULTS = HERE / "results"
+sys.path.insert(0, str(HERE.parents[1] / "python"))
+import softgrain
+from softgrain.reproduce import curves as laws
+
 STAGES = (0, 48, 80, 128)  # of 128 steps
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")  # distinct without colour vision, too
 
@@ -60,6 +68,26 @@ def curves():
     axes.set(xlabel="packing fraction $\\Phi$", ylabel="stress $\\sigma$ [MPa]", xlim=(0.7, 1), ylim=(0, None))
     axes.legend(fontsize=5.5, frameon=False)
     figure.savefig(RESULTS / "curves.png", dpi=200, metadata={"Software": None})
+
+
+def law(names):
+    """results/law.csv, law.png: the law of Fig. 4 of the paper, read off as `softgrain reproduce` does. names: speed -> run."""
+    records = []
+    figure, axes = plt.subplots(figsize=(3.6, 2.8), layout="constrained")
+    for colour, (velocity, path) in zip(COLOURS, names.items()):
+        curve = laws.compaction(softgrain.open(path))
+        found, (strain, phi) = laws.coordination_law(curve), laws.onset(curve)
+        records.append({"velocity": velocity, "exponent": found.exponent, "half_width_95": found.half_width, "z0": found.z0,
+                        "z1": found.z1, "strain_at_z3": strain, "phi_0_at_z3": phi, "sigma0_kPa": curve.reference_stress / 1e3})
+        after = curve.phi > laws.REFERENCE_PACKING_FRACTION + 0.002
+        axes.loglog(curve.phi[after] - laws.REFERENCE_PACKING_FRACTION, (curve.z[after] - found.z0) / (found.z1 - found.z0),
+                    color=colour, linewidth=1, label=f"{velocity} m/s: exponent {found.exponent:.2f} ± {found.half_width:.2f}")
+    distance = np.geomspace(0.004, 0.28, 20)
+    axes.loglog(distance, (distance / distance[-1]) ** 0.5, "k:", linewidth=0.8, label="exponent 1/2")
+    axes.set(xlabel="$\\Phi_0 - 0.8$", ylabel="$(Z - Z_0)/(Z_1 - Z_0)$", ylim=(0.02, 1.3))
+    axes.legend(fontsize=6.5, frameon=False)
+    figure.savefig(RESULTS / "law.png", dpi=160, metadata={"Software": None})
+    packing_series.write(RESULTS / "law.csv", records)
 
 
 def draw(out):
