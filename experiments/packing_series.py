@@ -88,6 +88,7 @@ def draw(path, records, label, phi, axis):
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import LogLocator, NullLocator
     plt.rcParams.update({"font.size": 8, "axes.linewidth": 0.6})
     figure, panels = plt.subplots(1, 2, figsize=(7.8, 2.7), layout="constrained")
     names = list(dict.fromkeys(label(record) for record in records))
@@ -100,6 +101,9 @@ def draw(path, records, label, phi, axis):
             axes.errorbar(x, [float(r[key]) for r in line], bars, color=colour, linewidth=0.9, elinewidth=0.6, capsize=1.5,
                           marker="o", markersize=2.5, label=name)
     panels[0].set(xlabel=axis, ylabel="vertical stress $\\sigma$ [MPa]", yscale="log")
+    panels[0].yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    panels[0].yaxis.set_major_formatter("{x:g}")
+    panels[0].yaxis.set_minor_locator(NullLocator())
     panels[1].set(xlabel=axis, ylabel="coordination number $Z$")
     panels[1].legend(fontsize=6.5, frameon=False, loc="upper left", bbox_to_anchor=(1.01, 1))
     figure.savefig(path, dpi=160, metadata={"Software": None})
