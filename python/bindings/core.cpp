@@ -101,12 +101,12 @@ py::array view_of(const VectorView& view, const py::object& owner) {
   return array;
 }
 
-py::list grains_of(const py::object& self) {
-  py::list grains;
+py::list views_of(const py::object& self) {
+  py::list views;
   for (const GrainView& grain : self.cast<LiveSimulation&>().simulation->grains())
-    grains.append(py::make_tuple(view_of(grain.position, self), view_of(grain.velocity, self),
-                                 view_of(grain.outline, self)));
-  return grains;
+    views.append(py::make_tuple(view_of(grain.position, self), view_of(grain.velocity, self),
+                                view_of(grain.outline, self)));
+  return views;
 }
 
 /// A NumPy array that takes over the numbers.
@@ -130,7 +130,7 @@ py::dict arrays_of(std::map<std::string, Array>& fields) {
   return arrays;
 }
 
-py::dict scene_of(LiveSimulation& live) {
+py::dict scene_parts(LiveSimulation& live) {
   Scene scene;
   {
     const Use use(live);
@@ -145,7 +145,7 @@ py::dict scene_of(LiveSimulation& live) {
   return parts;
 }
 
-std::vector<std::tuple<std::string, std::string, double>> observe(LiveSimulation& live) {
+std::vector<std::tuple<std::string, std::string, double>> row_of(LiveSimulation& live) {
   std::vector<std::tuple<std::string, std::string, double>> row;
   const Use use(live);
   const py::gil_scoped_release unlocked;
@@ -222,9 +222,9 @@ PYBIND11_MODULE(_core, module) {
             advance(live, [&] { return live.simulation->strain() < until; });
           },
           py::arg("until"))
-      .def("observe", &observe)
-      .def("scene", &scene_of)
-      .def("grains", &grains_of);
+      .def("row", &row_of)
+      .def("scene_parts", &scene_parts)
+      .def("views", &views_of);
   say(type, "finished", &Simulation::finished);
   say(type, "progress", &Simulation::progress);
   say(type, "time", &Simulation::time);

@@ -47,7 +47,7 @@ class Case:
 
     def _repr_html_(self) -> str:
         """What a notebook shows: the values that are not left to their defaults, unchecked."""
-        given = dict(_flat(tomllib.loads(Path(self.path).read_text())))
+        given = dict(_flat(tomllib.loads(Path(str(self.path)).read_text())))
         name = "" if self.path == os.devnull else str(self.path)
         return html_table(name, {**given, **dict(self.values)})
 

@@ -35,8 +35,8 @@ class Simulation(CompiledSimulation):
         self.units: dict[str, str] = {}  # of the last row observed
         self._motion = motion
         if motion is not None:
-            me = weakref.ref(self)  # a motion may know its simulation, and both must be able to go
-            self.follow(math.nan if duration is None else duration, lambda time: me()._motion(time))
+            me = weakref.proxy(self)  # a motion may know its simulation, and both must be able to go
+            self.follow(math.nan if duration is None else duration, lambda time: me._motion(time))
 
     def run(self, until: float = math.inf) -> None:
         """Steps until the strain has reached `until`, or the end of the path. Other threads run meanwhile; Ctrl-C raises
@@ -55,15 +55,15 @@ class Simulation(CompiledSimulation):
 
     def observe(self) -> dict[str, float]:
         """The row of series.csv now. Forces on walls are means over the steps since the last row."""
-        row = super().observe()
+        row = self.row()
         self.units = {name: unit for name, unit, _ in row}
         return {name: value for name, _, value in row}
 
     @property
     def grains(self) -> list[Grain]:
         """Views of all grains. They keep the simulation alive; a copy keeps the present state."""
-        return [Grain(*views) for views in super().grains()]
+        return [Grain(*views) for views in self.views()]
 
     def scene(self) -> Snapshot:
         """The state now, as a snapshot of a run has it: arrays of their own, with pressures, contacts, outlines and walls."""
-        return Snapshot(step=self.steps_done, time=self.time, **super().scene())
+        return Snapshot(step=self.steps_done, time=self.time, **self.scene_parts())
