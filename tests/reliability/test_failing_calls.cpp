@@ -94,12 +94,12 @@ void fail_in_turn(const std::string& kind, int trials, const std::string& suffix
 }  // namespace
 
 TEST_CASE("a write that fails never passes for a run that is done") {
-  fail_in_turn("write", repeats(8, 200));
-  fail_in_turn("write", repeats(4, 200), "+");
+  fail_in_turn("write", repeats(6, 200));
+  fail_in_turn("write", repeats(3, 200), "+");
 }
 
 TEST_CASE("an fsync, a rename or an open that fails never passes for a run that is done") {
-  for (const std::string kind : {"fsync", "rename", "open"}) fail_in_turn(kind, repeats(6, 200));
+  for (const std::string kind : {"fsync", "rename", "open"}) fail_in_turn(kind, repeats(4, 200));
 }
 
-TEST_CASE("memory that runs out ends a run in order") { fail_in_turn("malloc", repeats(15, 400)); }
+TEST_CASE("memory that runs out ends a run in order") { fail_in_turn("malloc", repeats(8, 400)); }

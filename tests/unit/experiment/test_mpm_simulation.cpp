@@ -151,3 +151,22 @@ TEST_CASE("a checkpoint of another case is refused") {
   const Checkpoint other = create_mpm_simulation(small_packing("implicit"))->checkpoint();
   CHECK_THROWS_AS(simulation->restore(other), IoError);
 }
+
+TEST_CASE("a checkpoint with a NaN, or with a contact of a vertex or wall that does not exist, is refused") {
+  const auto simulation = create_mpm_simulation(small_packing("implicit"));
+  const Checkpoint intact = simulation->checkpoint();
+  Checkpoint changed = intact;
+  std::get<std::vector<double>>(changed.arrays["velocity"].values)[3] = std::nan("");
+  CHECK_THROWS_AS(simulation->restore(changed), IoError);
+  for (const std::int64_t body : {-2ll, 1'000'000'000ll, 1ll << 40})
+    for (std::size_t column = 0; column < 6; ++column) {
+      changed = intact;
+      std::vector<std::int64_t> bodies(6, 0);
+      bodies[column] = body;
+      changed.arrays["contact_bodies"] = {6, bodies};
+      changed.arrays["contact_places"] = {5, std::vector<double>(5, 0.0)};
+      changed.arrays["contact_impulse"] = {2, std::vector<double>(2, 0.0)};
+      CHECK_THROWS_AS(simulation->restore(changed), IoError);
+    }
+  CHECK_NOTHROW(simulation->restore(intact));
+}

@@ -11,7 +11,7 @@ using namespace softgrain;
 namespace {
 
 /// Ten steps; step k takes k sweeps, has the residual 1/k and the overlap 0.1 k; every third one converges.
-class Countdown final : public Simulation {
+class Countdown : public Simulation {
  public:
   bool finished() const override { return done_ == 10; }
   double progress() const override { return static_cast<double>(done_) / 10; }
@@ -59,6 +59,17 @@ TEST_CASE("a run goes on until the simulation is finished and sums up its steps"
   CHECK(report.residual_max == 1);
   CHECK(report.overlap_max == 1);
   CHECK(recorder.seen.sweeps == 55);
+}
+
+TEST_CASE("an error of the numbers tells the step in which they broke down") {
+  struct Broken : Countdown {
+    StepReport step() override {
+      if (steps_done() == 6) throw NumericalError("too fast");
+      return Countdown::step();
+    }
+  } simulation;
+  StopAfter recorder(100);
+  CHECK_THROWS_WITH_AS(run(simulation, recorder), "step 7: too fast", NumericalError);
 }
 
 TEST_CASE("the recorder stops a run, which goes on later where it stopped") {

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -99,4 +100,13 @@ TEST_CASE("points in a row fill cells along one axis only") {
 TEST_CASE("no point and a single point have no pairs") {
   check_pairs(std::vector<Vec<2>>{}, 1);
   check_pairs(std::vector<Vec<2>>{{3, 4}}, 1);
+}
+
+TEST_CASE("a position that is not finite has no cell") {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    for (std::size_t place : {0u, 1u}) {
+      std::vector<Vec<2>> x{{0, 0}, {1, 1}};
+      x[place][1] = bad;
+      CHECK_THROWS_AS(CellGrid<2>(x, 1), NumericalError);
+    }
 }
