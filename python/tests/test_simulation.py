@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 import weakref
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -275,11 +276,22 @@ def test_a_simulation_and_a_motion_that_know_each_other_can_go():
     assert gone() is None
 
 
-def test_threads_can_be_chosen():
+def last_row(seed):
+    simulation = softgrain.Simulation(softgrain.Case(MPM_BOX).set("sample.seed", seed).set("sample.packing_fraction", 0.5))
+    simulation.run()
+    return simulation.observe()
+
+
+def test_simulations_side_by_side_and_on_several_threads_have_the_numbers_of_one_alone():
+    alone = [last_row(seed) for seed in (1, 2, 3)]
     before = softgrain.threads()
-    softgrain.set_threads(before + 1)
-    assert softgrain.threads() == before + 1
-    softgrain.set_threads(before)
+    softgrain.set_threads(before + 2)
+    try:
+        assert softgrain.threads() == before + 2
+        with ThreadPoolExecutor(3) as pool:
+            assert list(pool.map(last_row, (1, 2, 3))) == alone
+    finally:
+        softgrain.set_threads(before)
 
 
 def test_without_the_compiled_module_the_reader_works_and_a_simulation_says_what_is_missing(tmp_path):
