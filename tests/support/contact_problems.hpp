@@ -55,7 +55,7 @@ inline ContactProblem squeezed_packing(int per_side, double mu, std::uint64_t se
   std::vector<Eigen::Vector2d> x;
   for (int i = 0; i < disks; ++i)
     x.emplace_back(2 * (i % per_side) + i / per_side % 2, std::sqrt(3.0) * (i / per_side));
-  Eigen::VectorXd inverse_mass(3 * disks), v(3 * disks);  // (v_x, v_y, spin)
+  Eigen::VectorXd inverse_mass(3 * disks), v = Eigen::VectorXd::Zero(3 * disks);  // (v_x, v_y, spin)
   for (int i = 0; i < disks; ++i) {
     const double inverse = random.uniform(0.5, 2);
     inverse_mass.segment<3>(3 * i) << inverse, inverse, 2 * inverse;
