@@ -69,7 +69,7 @@ StepParts time_parts(const BpmCompression& simulation, const Case& paper, const 
       repeat([&] { signorini_offset<2>(contacts, particles.velocity, {}, paper.time.step, offset); }),
       repeat([&] { system.sweep(contacts.impulse, contacts.friction, options); }),
       repeat([&] { stale += needs_rebuild(state.reference, particles) ? 1 : 0; }),
-      repeat([&] { apply_impulses<2>(pushed_system, contacts.impulse); }),
+      repeat([&] { pushed_system.apply_impulses(contacts.impulse); }),
       repeat([&] {
         set_reference(rebuilt.reference, rebuilt.particles);
         rebuilt.rebuild_contacts();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/cell_grid.hpp"
 #include "softgrain/math/lanes.hpp"
 
@@ -14,41 +15,62 @@ AttractionForces::AttractionForces(std::vector<Attraction> laws) : laws_(std::mo
 void AttractionForces::update(const RigidParticles<2>& particles, const NeighbourReference<2>& reference) {
   if (generation_ == reference.generation) return;
   generation_ = reference.generation;
-  row_begin_.assign(1, 0);
-  neighbour_.clear();
-  if (particles.size() == 0) return;
-  const double widest = *std::max_element(particles.radius.begin(), particles.radius.end());
-  const CellGrid<2> grid(reference.position, 4 * widest + reference.skin);
-  for (int i = 0; i < particles.size(); ++i) {
-    const std::size_t begin = neighbour_.size();
+  rows_.resize(reference.grains.size());
+  parallel_for(static_cast<int>(rows_.size()),
+               [&](int g) { rows_[g] = rows_of(particles, reference, reference.grains[g]); });
+}
+
+AttractionForces::Rows AttractionForces::rows_of(const RigidParticles<2>& particles,
+                                                 const NeighbourReference<2>& reference,
+                                                 const GrainRange& grain) {
+  Rows rows;
+  rows.first = grain.begin;
+  const auto x = std::span(reference.position).subspan(grain.begin, grain.end - grain.begin);
+  const double* radius = particles.radius.data() + grain.begin;
+  const double widest = *std::max_element(radius, radius + x.size());
+  const CellGrid<2> grid(x, 4 * widest + reference.skin);
+  for (int i = 0; i < static_cast<int>(x.size()); ++i) {
+    const std::size_t begin = rows.neighbour.size();
     grid.for_each_neighbour(i, [&](int j) {
-      if (particles.grain[i] != particles.grain[j]) return;
-      const Vec<2> d = reference.position[j] - reference.position[i];
-      const double reach = 2 * (particles.radius[i] + particles.radius[j]) + reference.skin;
-      if (dot(d, d) < reach * reach) neighbour_.push_back(j);
+      if (j < i) return;
+      const Vec<2> d = x[j] - x[i];
+      const double reach = 2 * (radius[i] + radius[j]) + reference.skin;
+      if (dot(d, d) < reach * reach) rows.neighbour.push_back(grain.begin + j);
     });
-    std::sort(neighbour_.begin() + begin, neighbour_.end());
-    while (neighbour_.size() % lane_count != 0) neighbour_.push_back(i);
-    row_begin_.push_back(static_cast<int>(neighbour_.size()));
+    std::sort(rows.neighbour.begin() + begin, rows.neighbour.end());
+    while (rows.neighbour.size() % lane_count != 0) rows.neighbour.push_back(grain.begin + i);
+    rows.begin.push_back(static_cast<int>(rows.neighbour.size()));
   }
+  return rows;
 }
 
 void AttractionForces::add_forces(const RigidParticles<2>& particles, std::span<Vec<2>> force) const {
+  parallel_for(static_cast<int>(rows_.size()), [&](int g) { add_forces(particles, rows_[g], force); });
+}
+
+void AttractionForces::add_forces(const RigidParticles<2>& particles, const Rows& rows,
+                                  std::span<Vec<2>> force) const {
   const double* radius = particles.radius.data();
-  for (int i = 0; i < particles.size(); ++i) {
+  for (int row = 0; row < rows.size(); ++row) {
+    const int i = rows.first + row;
     const Attraction& attraction = law(particles.grain[i]);
     const Vec<2>& x = particles.position[i];
     Lanes sum_x = splat(0), sum_y = splat(0);
-    for (int k = row_begin_[i]; k < row_begin_[i + 1]; k += lane_count) {
-      const int* j = &neighbour_[k];
+    for (int k = rows.begin[row]; k < rows.begin[row + 1]; k += lane_count) {
+      const int* j = &rows.neighbour[k];
       const LaneColumns x_j = gather_columns(particles.position.data(), j);
       const Lanes d_x = x_j.x - x[0], d_y = x_j.y - x[1];
       const Lanes a0 = radius[i] + Lanes{radius[j[0]], radius[j[1]], radius[j[2]], radius[j[3]]};
       const Lanes r_squared = d_x * d_x + d_y * d_y;
-      // F_ij = F(r)/r (x_j - x_i); a row's padding has x_j = x_i, which would be 0/0
+      // F_ij = F(r)/r (x_j - x_i) on i, -F_ij on j; a row's padding has x_j = x_i, which would be 0/0
       const Lanes F_over_r = attraction.force_over_distance(r_squared > 0 ? r_squared : a0 * a0, a0);
-      sum_x += F_over_r * d_x;
-      sum_y += F_over_r * d_y;
+      const Lanes F_x = F_over_r * d_x, F_y = F_over_r * d_y;
+      sum_x += F_x;
+      sum_y += F_y;
+      LaneColumns force_j = gather_columns(force.data(), j);
+      force_j.x -= F_x;
+      force_j.y -= F_y;
+      scatter_columns(force_j, force.data(), j);
     }
     force[i] += Vec<2>{horizontal_sum(sum_x), horizontal_sum(sum_y)};
   }

@@ -8,8 +8,8 @@
 
 namespace softgrain {
 
-/// The attraction between the primary particles of each grain, over a full list of neighbours (each pair
-/// twice: no particle is written by another's row, so the sum's order is fixed).
+/// The attraction between the primary particles of each grain, grain by grain on all threads, over a list in
+/// which each pair stands once.
 class AttractionForces {
  public:
   /// The same law in every grain.
@@ -31,18 +31,30 @@ class AttractionForces {
   /// Calls visit(i, j) once for each listed pair, i < j.
   template <class Visit>
   void for_each_pair(Visit&& visit) const {
-    for (int i = 0; i + 1 < static_cast<int>(row_begin_.size()); ++i)
-      for (int k = row_begin_[i]; k < row_begin_[i + 1]; ++k)
-        if (i < neighbour_[k]) visit(i, neighbour_[k]);
+    for (const Rows& rows : rows_)
+      for (int row = 0; row < rows.size(); ++row)
+        for (int k = rows.begin[row]; k < rows.begin[row + 1]; ++k)
+          if (const int i = rows.first + row; i < rows.neighbour[k]) visit(i, rows.neighbour[k]);
   }
 
   const Attraction& law(int grain) const { return laws_.size() == 1 ? laws_.front() : laws_[grain]; }
 
  private:
+  /// The neighbours of each primary of a grain, as far as they come after it.
+  struct Rows {
+    int first = 0;  // primary of the first row
+    std::vector<int> begin{0};
+    std::vector<int> neighbour;  // rows are padded to four lanes with the primary itself
+
+    int size() const { return static_cast<int>(begin.size()) - 1; }
+  };
+  static Rows rows_of(const RigidParticles<2>& particles, const NeighbourReference<2>& reference,
+                      const GrainRange& grain);
+  void add_forces(const RigidParticles<2>& particles, const Rows& rows, std::span<Vec<2>> force) const;
+
   std::vector<Attraction> laws_;
   int generation_ = -1;
-  std::vector<int> row_begin_;  ///< (n + 1), rows are padded to four lanes with the particle itself
-  std::vector<int> neighbour_;
+  std::vector<Rows> rows_;
 };
 
 }  // namespace softgrain

@@ -26,6 +26,12 @@ struct Violation {
     max_square = std::max(max_square, square);
     ++contacts;
   }
+  Violation& operator+=(const Violation& more) {
+    sum_of_squares += more.sum_of_squares;
+    max_square = std::max(max_square, more.max_square);
+    contacts += more.contacts;
+    return *this;
+  }
 };
 
 /// Root mean square over contacts of the velocity that the others give, u_c - W_cc p_c [m/s]; from p = 0 that

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <vector>
 
 namespace softgrain {
 
@@ -27,6 +29,31 @@ template <class Work>
 void parallel_for(int count, const Work& work) {
   detail::run_loop(
       count, [](const void* w, int i) { (*static_cast<const Work*>(w))(i); }, &work);
+}
+
+namespace detail {
+/// Items of a loop over many small things that one thread takes at once. Fixed, so that sums over chunks have
+/// the same bits on any number of threads.
+inline constexpr int chunk = 2048;
+inline int chunks(int count) { return (count + chunk - 1) / chunk; }
+}  // namespace detail
+
+/// work(begin, end) for consecutive ranges that make up 0 .. count - 1, as parallel_for.
+template <class Work>
+void parallel_ranges(int count, const Work& work) {
+  parallel_for(detail::chunks(count),
+               [&](int k) { work(k * detail::chunk, std::min(count, (k + 1) * detail::chunk)); });
+}
+
+/// The sum of what work(begin, end) returns for consecutive ranges that make up 0 .. count - 1; T{} is zero.
+template <class T, class Work>
+T parallel_sum(int count, const Work& work) {
+  std::vector<T> part(detail::chunks(count));
+  parallel_for(detail::chunks(count),
+               [&](int k) { part[k] = work(k * detail::chunk, std::min(count, (k + 1) * detail::chunk)); });
+  T sum{};
+  for (const T& p : part) sum += p;
+  return sum;
 }
 
 }  // namespace softgrain

@@ -234,13 +234,14 @@ void BpmSimulation::restore(const Checkpoint& state) {
   from_array<2>(state, "position", particles.position);
   from_array<2>(state, "velocity", particles.velocity);
   from_array<1>(state, "spin", particles.spin);
-  from_array<2>(state, "list_position", dynamics_.reference.position);
-  from_array<2>(state, "list_wall_point", dynamics_.reference.wall_point);
+  std::vector<Vec<2>> list_position(particles.position.size()), list_wall_point(particles.walls.size());
+  from_array<2>(state, "list_position", list_position);
+  from_array<2>(state, "list_wall_point", list_wall_point);
   std::vector<Vec<2>> wall_point(particles.walls.size());
   from_array<2>(state, "wall_point", wall_point);
   for (std::size_t w = 0; w < wall_point.size(); ++w) particles.walls[w].point = wall_point[w];
   // the lists are a function of the reference, so they come back in the same order
-  ++dynamics_.reference.generation;
+  set_reference(dynamics_.reference, particles, std::move(list_position), std::move(list_wall_point));
   dynamics_.rebuild_contacts();
   detect_contacts(particles, dynamics_.contacts);
   attraction_.update(particles, dynamics_.reference);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/math/lanes.hpp"
 #include "softgrain/rigid/lane_sweep.hpp"
 
@@ -111,23 +112,56 @@ void RigidContactSystem<Dim>::relax_contact(int contact, Vec<Dim>& impulse, doub
 }
 
 template <int Dim>
-Violation RigidContactSystem<Dim>::sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
-                                         const SolverOptions& options) {
+template <class Work>
+void RigidContactSystem<Dim>::for_each_block(const Work& work) const {
+  const int inside = static_cast<int>(contacts_.blocks.size()) - 1;
+  parallel_for(inside, work);
+  if (inside >= 0) work(inside);
+}
+
+template <int Dim>
+Violation RigidContactSystem<Dim>::sweep_block(int block, std::span<Vec<Dim>> impulse,
+                                               std::span<const double> friction, double relaxation) {
   Violation violation;
-  for (const ContactBatch& batch : contacts_.batches) {
-    int c = batch.begin;
-    if constexpr (Dim == 2)
-      c = sweep_lanes({particles_, contacts_, offset_, impulse, friction, options.relaxation}, batch,
-                      violation);
-    for (; c < batch.end; ++c) relax_contact(c, impulse[c], friction[c], options.relaxation, violation);
+  const ContactBlock& contacts = contacts_.blocks[block];
+  for (const ContactBatch* batch : {&contacts.frictionless, &contacts.frictional}) {
+    int c = batch->begin;
+    if constexpr (Dim == 2) {
+      if (c < batch->fours_end)
+        sweep_fours({particles_, contacts_, offset_, impulse, friction, relaxation}, *batch,
+                    batch == &contacts.frictional, violation);
+      c = batch->fours_end;
+    }
+    for (; c < batch->end; ++c) relax_contact(c, impulse[c], friction[c], relaxation, violation);
   }
   return violation;
 }
 
 template <int Dim>
-void apply_impulses(RigidContactSystem<Dim>& system, std::span<const Vec<Dim>> impulse) {
-  for (int c = 0; c < system.size(); ++c)
-    if (impulse[c][0] != 0) system.apply_impulse(c, impulse[c]);
+Violation RigidContactSystem<Dim>::sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
+                                         const SolverOptions& options) {
+  std::vector<Violation> found(contacts_.blocks.size());
+  for_each_block([&](int k) { found[k] = sweep_block(k, impulse, friction, options.relaxation); });
+  Violation violation;
+  for (const Violation& of_block : found) violation += of_block;
+  return violation;
+}
+
+template <int Dim>
+void RigidContactSystem<Dim>::push_block(int block, std::span<const Vec<Dim>> impulse) {
+  const ContactBlock& contacts = contacts_.blocks[block];
+  int c = contacts.begin();
+  if constexpr (Dim == 2) {
+    push_fours(particles_, contacts_, impulse, contacts.frictionless);
+    c = contacts.frictionless.fours_end;
+  }
+  for (; c < contacts.end(); ++c)
+    if (impulse[c][0] != 0) apply_impulse(c, impulse[c]);
+}
+
+template <int Dim>
+void RigidContactSystem<Dim>::apply_impulses(std::span<const Vec<Dim>> impulse) {
+  for_each_block([&](int k) { push_block(k, impulse); });
 }
 
 template void signorini_offset<2>(const RigidContacts<2>&, std::span<const Vec<2>>, const ContactLaw&, double,
@@ -136,7 +170,5 @@ template void signorini_offset<3>(const RigidContacts<3>&, std::span<const Vec<3
                                   std::vector<double>&);
 template class RigidContactSystem<2>;
 template class RigidContactSystem<3>;
-template void apply_impulses<2>(RigidContactSystem<2>&, std::span<const Vec<2>>);
-template void apply_impulses<3>(RigidContactSystem<3>&, std::span<const Vec<3>>);
 
 }  // namespace softgrain

@@ -51,7 +51,11 @@ class RigidContactSystem {
   Vec<Dim> relative_velocity(int contact) const;
   void apply_impulse(int contact, const Vec<Dim>& dp);
 
-  /// One sweep of NLGS over all batches, four contacts at once in the plane; the same law as the plain sweep.
+  /// v += M^-1 H p for all contacts (warm start).
+  void apply_impulses(std::span<const Vec<Dim>> impulse);
+
+  /// One sweep of NLGS, grain by grain on all threads and then between grains, four contacts at once in the
+  /// plane; the same law as the plain sweep, and the same bits on any number of threads.
   Violation sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
                   const SolverOptions& options);
 
@@ -60,13 +64,16 @@ class RigidContactSystem {
   void relax_contact(int contact, Vec<Dim>& impulse, double friction, double relaxation,
                      Violation& violation);
 
+  Violation sweep_block(int block, std::span<Vec<Dim>> impulse, std::span<const double> friction,
+                        double relaxation);
+  void push_block(int block, std::span<const Vec<Dim>> impulse);
+  /// work(block) for each: inside grains on all threads, then between them.
+  template <class Work>
+  void for_each_block(const Work& work) const;
+
   RigidParticles<Dim>& particles_;
   const RigidContacts<Dim>& contacts_;
   std::span<const double> offset_;
 };
-
-/// v_free += M^-1 H p for the impulses kept from the last step (warm start).
-template <int Dim>
-void apply_impulses(RigidContactSystem<Dim>& system, std::span<const Vec<Dim>> impulse);
 
 }  // namespace softgrain

@@ -5,10 +5,18 @@
 
 namespace softgrain {
 
-/// Contacts begin .. end - 1 that share no particle: they may be solved in any order.
+/// Contacts begin .. end - 1, swept in this order. Up to `fours_end` each four in turn share no particle, so
+/// that they are solved at once.
 struct ContactBatch {
-  int begin = 0, end = 0;
-  bool frictional = false;
+  int begin = 0, fours_end = 0, end = 0;
+};
+
+/// The contacts inside a grain, or those between grains and with walls.
+struct ContactBlock {
+  ContactBatch frictionless, frictional;  ///< one after the other
+
+  int begin() const { return frictionless.begin; }
+  int end() const { return frictional.end; }
 };
 
 /// Candidate contacts, in the order of the sweep: all pairs that could touch before the next rebuild. Open
@@ -26,7 +34,7 @@ struct RigidContacts {
   std::vector<Vec<Dim>> normal;          ///< (m) unit, from a to b
   std::vector<double> gap;               ///< (m) [m], open > 0
   std::vector<Vec<Dim>> impulse;         ///< (m) (p_n, p_t) [N s/m in 2D]
-  std::vector<ContactBatch> batches;
+  std::vector<ContactBlock> blocks;      ///< those inside grains share no particle; the last is between them
 
   int size() const { return static_cast<int>(body_a.size()); }
 };

@@ -51,10 +51,9 @@ struct BodyLanes {
 };
 
 /// Per contact: reads 72 B of contact and 32 B of velocities, writes 16 B and 32 B.
-int sweep_frictionless(const SweepData& data, const ContactBatch& batch, LaneViolation& violation) {
+void sweep_frictionless(const SweepData& data, const ContactBatch& batch, LaneViolation& violation) {
   const auto& [particles, contacts, offset, impulse, friction, relaxation] = data;
-  int c = batch.begin;
-  for (; c + lane_count <= batch.end; c += lane_count) {
+  for (int c = batch.begin; c < batch.fours_end; c += lane_count) {
     BodyLanes bodies(particles.velocity.data(), contacts, c);
     const LaneColumns n = load_columns(&contacts.normal[c]);
     const Lanes inverse_a = load_lanes(&contacts.inverse_mass_a[c]),
@@ -73,7 +72,6 @@ int sweep_frictionless(const SweepData& data, const ContactBatch& batch, LaneVio
     const Lanes v = dp * (inverse_a + inverse_b);
     violation.add(v * v, p_n);
   }
-  return c;
 }
 
 Lanes gather_spin(const Spin<2>* spin, const int* index) {
@@ -84,12 +82,11 @@ void scatter_spin(Lanes lanes, Spin<2>* spin, const int* index) {
 }
 
 /// Per contact: reads 80 B of contact and 48 B of velocities and spins, writes 16 B and 48 B.
-int sweep_frictional(const SweepData& data, const ContactBatch& batch, LaneViolation& violation) {
+void sweep_frictional(const SweepData& data, const ContactBatch& batch, LaneViolation& violation) {
   const auto& [particles, contacts, offset, impulse, friction, relaxation] = data;
   const double kappa = particles.inertia_ratio;
   Spin<2>* spin = particles.spin.data();
-  int c = batch.begin;
-  for (; c + lane_count <= batch.end; c += lane_count) {
+  for (int c = batch.begin; c < batch.fours_end; c += lane_count) {
     const int *a = &contacts.body_a[c], *b = &contacts.body_b[c];
     BodyLanes bodies(particles.velocity.data(), contacts, c);
     const Lanes s_a = gather_spin(spin, a), s_b = gather_spin(spin, b);
@@ -116,16 +113,26 @@ int sweep_frictional(const SweepData& data, const ContactBatch& batch, LaneViola
     const Lanes v_n = W_nn * dp_n, v_t = (1 + kappa) * W_nn * dp_t;
     violation.add(v_n * v_n + v_t * v_t, p_n);
   }
-  return c;
 }
 
 }  // namespace
 
-int sweep_lanes(const SweepData& data, const ContactBatch& batch, Violation& violation) {
+void sweep_fours(const SweepData& data, const ContactBatch& batch, bool frictional, Violation& violation) {
   LaneViolation lanes;
-  const int next = (batch.frictional ? sweep_frictional : sweep_frictionless)(data, batch, lanes);
+  (frictional ? sweep_frictional : sweep_frictionless)(data, batch, lanes);
   lanes.add_to(violation, data.relaxation);
-  return next;
+}
+
+void push_fours(RigidParticles<2>& particles, const RigidContacts<2>& contacts,
+                std::span<const Vec<2>> impulse, const ContactBatch& batch) {
+  for (int c = batch.begin; c < batch.fours_end; c += lane_count) {
+    const Lanes p_n = load_columns(&impulse[c]).x;
+    if (horizontal_max(p_n) == 0) continue;
+    BodyLanes bodies(particles.velocity.data(), contacts, c);
+    const LaneColumns n = load_columns(&contacts.normal[c]);
+    bodies.apply({p_n * n.x, p_n * n.y}, load_lanes(&contacts.inverse_mass_a[c]),
+                 load_lanes(&contacts.inverse_mass_b[c]));
+  }
 }
 
 }  // namespace softgrain

@@ -17,8 +17,12 @@ struct SweepData {
   double relaxation;                 ///< omega
 };
 
-/// Relaxes the contacts of a batch four at once, as RigidContactSystem::relax_contact does one by one, and
-/// adds to the violation. Returns the first contact that is left over (fewer than four are).
-int sweep_lanes(const SweepData& data, const ContactBatch& batch, Violation& violation);
+/// Relaxes the contacts of a batch up to its `fours_end` four at once, as RigidContactSystem::relax_contact
+/// does one by one, and adds to the violation.
+void sweep_fours(const SweepData& data, const ContactBatch& batch, bool frictional, Violation& violation);
+
+/// v += M^-1 n p_n for the same contacts of a frictionless batch.
+void push_fours(RigidParticles<2>& particles, const RigidContacts<2>& contacts,
+                std::span<const Vec<2>> impulse, const ContactBatch& batch);
 
 }  // namespace softgrain

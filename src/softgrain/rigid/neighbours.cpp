@@ -1,92 +1,88 @@
 #include "softgrain/rigid/neighbours.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <cassert>
+#include <set>
 
-#include "softgrain/contact/coloring.hpp"
 #include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/cell_grid.hpp"
 
 namespace softgrain {
 namespace {
 
-struct BodyPair {
-  int a, b;
-  auto operator<=>(const BodyPair&) const = default;
+/// How far a body may go before grains that were not close may meet, in units of the skin.
+constexpr double far_share = 4;
+
+template <int Dim>
+std::vector<GrainRange> grain_ranges(const RigidParticles<Dim>& particles) {
+  std::vector<GrainRange> ranges;
+  for (int i = 0; i < particles.size(); ++i) {
+    if (i == 0 || particles.grain[i] != particles.grain[i - 1]) ranges.push_back({i, i});
+    ++ranges.back().end;
+  }
+  assert(std::set<int>(particles.grain.begin(), particles.grain.end()).size() == ranges.size());
+  return ranges;
+}
+
+/// A circle (sphere) round a grain at the reference.
+template <int Dim>
+struct Bounds {
+  Vec<Dim> centre;
+  double radius = 0;
+
+  Bounds(const NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles,
+         const GrainRange& grain) {
+    for (int i = grain.begin; i < grain.end; ++i)
+      centre += (1.0 / (grain.end - grain.begin)) * reference.position[i];
+    for (int i = grain.begin; i < grain.end; ++i)
+      radius = std::max(radius, norm(reference.position[i] - centre) + particles.radius[i]);
+  }
 };
 
-/// Pairs with gap < skin at the reference positions, sorted by (a, b).
 template <int Dim>
-std::vector<BodyPair> close_pairs(const RigidParticles<Dim>& particles,
-                                  const NeighbourReference<Dim>& reference) {
-  const auto& x = reference.position;
-  const auto& radius = particles.radius;
-  std::vector<BodyPair> pairs;
-  if (x.empty()) return pairs;
-  const double reach = 2 * *std::max_element(radius.begin(), radius.end()) + reference.skin;
-  const CellGrid<Dim> grid(x, reach);
-  grid.for_each_close_pair([&](int i, int j) {
-    const Vec<Dim> d = x[j] - x[i];
-    const double touch = radius[i] + radius[j] + reference.skin;
-    if (dot(d, d) < touch * touch) pairs.push_back({i, j});
+void find_close_grains(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
+  const double room = reference.skin + 2 * reference.far;
+  std::vector<Vec<Dim>> centre;
+  std::vector<double> radius;
+  for (const GrainRange& grain : reference.grains) {
+    const Bounds<Dim> bounds(reference, particles, grain);
+    centre.push_back(bounds.centre);
+    radius.push_back(bounds.radius);
+  }
+  reference.close.clear();
+  if (centre.empty()) return;
+  const CellGrid<Dim> grid(centre, 2 * *std::max_element(radius.begin(), radius.end()) + room);
+  grid.for_each_close_pair([&](int g, int h) {
+    if (norm(centre[h] - centre[g]) < radius[g] + radius[h] + room) reference.close.push_back({g, h});
   });
-  for (std::size_t w = 0; w < particles.walls.size(); ++w) {
-    for (int i = 0; i < particles.size(); ++i) {
-      const double height = dot(x[i] - reference.wall_point[w], particles.walls[w].normal);
-      if (height < radius[i] + reference.skin) pairs.push_back({i, particles.wall_body(static_cast<int>(w))});
-    }
-  }
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
+  const int grains = static_cast<int>(centre.size());
+  for (int w = 0; w < static_cast<int>(particles.walls.size()); ++w)
+    for (int g = 0; g < grains; ++g)
+      if (dot(centre[g] - reference.wall_point[w], particles.walls[w].normal) < radius[g] + room)
+        reference.close.push_back({g, grains + w});
 }
 
-/// The contacts of `pairs`, ordered frictionless first, then by colour, then by (a, b), with their batches.
+/// Displacement of a body since the reference: D of its middle, and d of its particles about it.
 template <int Dim>
-RigidContacts<Dim> coloured_contacts(const std::vector<BodyPair>& pairs, const RigidParticles<Dim>& particles,
-                                     const FrictionRule& rule) {
-  const std::size_t m = pairs.size();
-  std::vector<int> a(m), b(m), order(m);
-  std::vector<double> mu(m);
-  for (std::size_t c = 0; c < m; ++c)
-    a[c] = pairs[c].a, b[c] = pairs[c].b, mu[c] = rule(pairs[c].a, pairs[c].b);
-  const std::vector<int> color = color_contacts(a, b, particles.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto batch_of = [&](int c) { return color[c] + (mu[c] > 0 ? 64 : 0); };
-  std::stable_sort(order.begin(), order.end(), [&](int c, int d) { return batch_of(c) < batch_of(d); });
+struct Displacement {
+  Vec<Dim> middle;
+  double most_about = 0;
+};
 
-  RigidContacts<Dim> contacts;
-  for (const int c : order) {
-    const int index = contacts.size();
-    if (index == 0 || batch_of(c) != batch_of(order[index - 1]))
-      contacts.batches.push_back({.begin = index, .end = index, .frictional = mu[c] > 0});
-    ++contacts.batches.back().end;
-    const double inverse_a = particles.inverse_mass[a[c]], inverse_b = particles.inverse_mass[b[c]];
-    contacts.body_a.push_back(a[c]);
-    contacts.body_b.push_back(b[c]);
-    contacts.inverse_mass_a.push_back(inverse_a);
-    contacts.inverse_mass_b.push_back(inverse_b);
-    contacts.inverse_delassus.push_back(1 / (inverse_a + inverse_b));
-    contacts.friction.push_back(mu[c]);
-  }
-  contacts.normal.resize(m);
-  contacts.gap.resize(m);
-  contacts.impulse.resize(m);
-  return contacts;
-}
-
-/// Warm start: the impulse of each old contact that carries one goes to the new contact of the same two
-/// bodies.
 template <int Dim>
-void carry_impulses(const RigidContacts<Dim>& old, RigidContacts<Dim>& contacts) {
-  std::vector<std::pair<BodyPair, int>> carrying;
-  for (int c = 0; c < old.size(); ++c)
-    if (old.impulse[c][0] > 0) carrying.push_back({{old.body_a[c], old.body_b[c]}, c});
-  std::sort(carrying.begin(), carrying.end());
-  for (int c = 0; c < contacts.size(); ++c) {
-    const BodyPair pair{contacts.body_a[c], contacts.body_b[c]};
-    const auto found = std::lower_bound(carrying.begin(), carrying.end(), std::pair{pair, 0});
-    if (found != carrying.end() && found->first == pair) contacts.impulse[c] = old.impulse[found->second];
+Displacement<Dim> displacement_of(const NeighbourReference<Dim>& reference,
+                                  const RigidParticles<Dim>& particles, const GrainRange& grain) {
+  Displacement<Dim> moved;
+  for (int i = grain.begin; i < grain.end; ++i) moved.middle += particles.position[i] - reference.position[i];
+  moved.middle *= 1.0 / (grain.end - grain.begin);
+  double square = 0;
+  for (int i = grain.begin; i < grain.end; ++i) {
+    const Vec<Dim> about = particles.position[i] - reference.position[i] - moved.middle;
+    square = std::max(square, dot(about, about));
   }
+  moved.most_about = std::sqrt(square);
+  return moved;
 }
 
 }  // namespace
@@ -94,61 +90,66 @@ void carry_impulses(const RigidContacts<Dim>& old, RigidContacts<Dim>& contacts)
 template <int Dim>
 bool needs_rebuild(const NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
   if (reference.position.size() != particles.position.size()) return true;
-  double largest = 0;  // squared
-  for (std::size_t i = 0; i < reference.position.size(); ++i) {
-    const Vec<Dim> d = particles.position[i] - reference.position[i];
-    largest = std::max(largest, dot(d, d));
-  }
-  for (std::size_t w = 0; w < reference.wall_point.size(); ++w) {
-    const Vec<Dim> d = particles.walls[w].point - reference.wall_point[w];
-    largest = std::max(largest, dot(d, d));
-  }
-  return 4 * largest > 0.81 * reference.skin * reference.skin;
+  const int grains = static_cast<int>(reference.grains.size());
+  std::vector<Displacement<Dim>> moved(grains + reference.wall_point.size());
+  parallel_for(grains, [&](int g) { moved[g] = displacement_of(reference, particles, reference.grains[g]); });
+  for (std::size_t w = 0; w < reference.wall_point.size(); ++w)
+    moved[grains + w].middle = particles.walls[w].point - reference.wall_point[w];
+  const double limit = 0.9 * reference.skin;
+  for (const Displacement<Dim>& of : moved)
+    if (2 * of.most_about > limit || norm(of.middle) + of.most_about > reference.far) return true;
+  return std::any_of(reference.close.begin(), reference.close.end(), [&](const std::array<int, 2>& pair) {
+    const Displacement<Dim>&a = moved[pair[0]], &b = moved[pair[1]];
+    return a.most_about + b.most_about + norm(a.middle - b.middle) > limit;
+  });
+}
+
+template <int Dim>
+void set_reference(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles,
+                   std::vector<Vec<Dim>> position, std::vector<Vec<Dim>> wall_point) {
+  reference.position = std::move(position);
+  reference.wall_point = std::move(wall_point);
+  ++reference.generation;
+  reference.grains = grain_ranges(particles);
+  reference.far = far_share * reference.skin;
+  find_close_grains(reference, particles);
 }
 
 template <int Dim>
 void set_reference(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
-  reference.position = particles.position;
-  reference.wall_point.clear();
-  for (const Wall<Dim>& wall : particles.walls) reference.wall_point.push_back(wall.point);
-  ++reference.generation;
-}
-
-template <int Dim>
-RigidContacts<Dim> candidate_contacts(const RigidParticles<Dim>& particles,
-                                      const NeighbourReference<Dim>& reference, const FrictionRule& friction,
-                                      const RigidContacts<Dim>& old) {
-  RigidContacts<Dim> contacts = coloured_contacts(close_pairs(particles, reference), particles, friction);
-  carry_impulses(old, contacts);
-  return contacts;
+  std::vector<Vec<Dim>> wall_point;
+  for (const Wall<Dim>& wall : particles.walls) wall_point.push_back(wall.point);
+  set_reference(reference, particles, particles.position, std::move(wall_point));
 }
 
 template <int Dim>
 void detect_contacts(const RigidParticles<Dim>& particles, RigidContacts<Dim>& contacts) {
   const int n = particles.size();
-  for (int c = 0; c < contacts.size(); ++c) {
-    const int a = contacts.body_a[c], b = contacts.body_b[c];
-    if (b < n) {
-      const Vec<Dim> d = particles.position[b] - particles.position[a];
-      const double r = norm(d);
-      contacts.gap[c] = r - (particles.radius[a] + particles.radius[b]);  // g = |x_b - x_a| - (R_a + R_b)
-      contacts.normal[c] = (1 / r) * d;
-    } else {
-      const Wall<Dim>& wall = particles.walls[b - n];
-      contacts.gap[c] = dot(particles.position[a] - wall.point, wall.normal) - particles.radius[a];
-      contacts.normal[c] = -wall.normal;  // from the particle to the wall
+  parallel_ranges(contacts.size(), [&](int begin, int end) {
+    for (int c = begin; c < end; ++c) {
+      const int a = contacts.body_a[c], b = contacts.body_b[c];
+      if (b < n) {
+        const Vec<Dim> d = particles.position[b] - particles.position[a];
+        const double r = norm(d);
+        contacts.gap[c] = r - (particles.radius[a] + particles.radius[b]);  // g = |x_b - x_a| - (R_a + R_b)
+        contacts.normal[c] = (1 / r) * d;
+      } else {
+        const Wall<Dim>& wall = particles.walls[b - n];
+        contacts.gap[c] = dot(particles.position[a] - wall.point, wall.normal) - particles.radius[a];
+        contacts.normal[c] = -wall.normal;  // from the particle to the wall
+      }
     }
-  }
+  });
 }
 
 template bool needs_rebuild<2>(const NeighbourReference<2>&, const RigidParticles<2>&);
 template bool needs_rebuild<3>(const NeighbourReference<3>&, const RigidParticles<3>&);
 template void set_reference<2>(NeighbourReference<2>&, const RigidParticles<2>&);
 template void set_reference<3>(NeighbourReference<3>&, const RigidParticles<3>&);
-template RigidContacts<2> candidate_contacts<2>(const RigidParticles<2>&, const NeighbourReference<2>&,
-                                                const FrictionRule&, const RigidContacts<2>&);
-template RigidContacts<3> candidate_contacts<3>(const RigidParticles<3>&, const NeighbourReference<3>&,
-                                                const FrictionRule&, const RigidContacts<3>&);
+template void set_reference<2>(NeighbourReference<2>&, const RigidParticles<2>&, std::vector<Vec<2>>,
+                               std::vector<Vec<2>>);
+template void set_reference<3>(NeighbourReference<3>&, const RigidParticles<3>&, std::vector<Vec<3>>,
+                               std::vector<Vec<3>>);
 template void detect_contacts<2>(const RigidParticles<2>&, RigidContacts<2>&);
 template void detect_contacts<3>(const RigidParticles<3>&, RigidContacts<3>&);
 

@@ -21,13 +21,13 @@ using Spin = Vec<spin_size<Dim>>;
 /// surface: with it no radius enters the contact equations (theory (12)).
 template <int Dim>
 struct RigidParticles {
-  std::vector<Vec<Dim>> position;               ///< (n) [m]
-  std::vector<double> radius;                   ///< (n) [m]
-  std::vector<double> mass;                     ///< (n) [kg/m in 2D, kg in 3D]
-  std::vector<int> grain;                       ///< (n) the grain that a particle belongs to
-  std::vector<Vec<Dim>> velocity;               ///< (n + walls) [m/s]
-  std::vector<Spin<Dim>> spin;                  ///< (n + walls) s = R omega [m/s]
-  std::vector<double> inverse_mass;             ///< (n + walls) [1/kg], 0 for walls
+  std::vector<Vec<Dim>> position;    ///< (n) [m]
+  std::vector<double> radius;        ///< (n) [m]
+  std::vector<double> mass;          ///< (n) [kg/m in 2D, kg in 3D]
+  std::vector<int> grain;            ///< (n) that a particle belongs to; those of one lie one after the other
+  std::vector<Vec<Dim>> velocity;    ///< (n + walls) [m/s]
+  std::vector<Spin<Dim>> spin;       ///< (n + walls) s = R omega [m/s]
+  std::vector<double> inverse_mass;  ///< (n + walls) [1/kg], 0 for walls
   double inertia_ratio = Dim == 2 ? 2.0 : 2.5;  ///< kappa = m R^2 / I: 2 for disks, 5/2 for spheres
   std::vector<Wall<Dim>> walls;
 

@@ -6,8 +6,25 @@
 
 #include "softgrain/contact/nlgs.hpp"
 #include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
 
 namespace softgrain {
+namespace {
+
+/// Of the contacts that carry impulse [m].
+struct Overlaps {
+  int contacts = 0;
+  double sum = 0, deepest = 0;
+
+  Overlaps& operator+=(const Overlaps& more) {
+    contacts += more.contacts;
+    sum += more.sum;
+    deepest = std::max(deepest, more.deepest);
+    return *this;
+  }
+};
+
+}  // namespace
 
 template <int Dim>
 RigidDynamics<Dim>::RigidDynamics(RigidParticles<Dim> bodies, FrictionRule friction,
@@ -59,8 +76,9 @@ template <int Dim>
 void RigidDynamics<Dim>::kick(const ForceField<Dim>& field, double dt) {
   force_.assign(particles.size(), {});
   field(particles, force_);
-  for (int i = 0; i < particles.size(); ++i)
-    particles.velocity[i] += dt * particles.inverse_mass[i] * force_[i];
+  parallel_ranges(particles.size(), [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) particles.velocity[i] += dt * particles.inverse_mass[i] * force_[i];
+  });
 }
 
 template <int Dim>
@@ -71,7 +89,7 @@ SolverReport RigidDynamics<Dim>::solve(double dt) {
       if (contacts.gap[c] > 0) contacts.impulse[c] = {};
   }
   RigidContactSystem<Dim> system(particles, contacts, offset_);
-  apply_impulses<Dim>(system, contacts.impulse);
+  system.apply_impulses(contacts.impulse);
   SolverOptions solver = options.solver;
   if (solver.velocity_scale == 0) solver.velocity_scale = 2 * mean_radius_ / dt;
   return solve_nlgs<Dim>(system, contacts.impulse, contacts.friction, solver);
@@ -81,29 +99,41 @@ SolverReport RigidDynamics<Dim>::solve(double dt) {
 /// velocity.
 template <int Dim>
 void RigidDynamics<Dim>::account_work(double dt) {
-  work = {};
-  double total = 0;
-  for (int i = 0; i < particles.size(); ++i) {
-    const Vec<Dim> middle = 0.5 * (velocity_start_[i] + particles.velocity[i]);
-    const Spin<Dim> spin_middle = 0.5 * (spin_start_[i] + particles.spin[i]);
-    work.force += dt * dot(force_[i], middle);
-    total +=
-        particles.mass[i] * (dot(middle, particles.velocity[i] - velocity_start_[i]) +
-                             dot(spin_middle, particles.spin[i] - spin_start_[i]) / particles.inertia_ratio);
-    if (!std::isfinite(total))
-      throw NumericalError(
-          fmt::format("the velocity of particle {} is not finite; use a smaller time step", i));
-  }
+  // by the forces, and by all
+  const auto sum = parallel_sum<Vec<2>>(particles.size(), [&](int begin, int end) {
+    Vec<2> part;
+    for (int i = begin; i < end; ++i) {
+      const Vec<Dim> middle = 0.5 * (velocity_start_[i] + particles.velocity[i]);
+      const Spin<Dim> spin_middle = 0.5 * (spin_start_[i] + particles.spin[i]);
+      part[0] += dt * dot(force_[i], middle);
+      part[1] += particles.mass[i] *
+                 (dot(middle, particles.velocity[i] - velocity_start_[i]) +
+                  dot(spin_middle, particles.spin[i] - spin_start_[i]) / particles.inertia_ratio);
+    }
+    return part;
+  });
+  if (!std::isfinite(sum[1])) throw_not_finite();
+  work = {.force = sum[0]};
   for (int w = 0; w < static_cast<int>(particles.walls.size()); ++w)
     work.wall -= dot(wall_impulse(w), particles.walls[w].velocity);
-  work.contact = total - work.force - work.wall;
+  work.contact = sum[1] - work.force - work.wall;
+}
+
+template <int Dim>
+void RigidDynamics<Dim>::throw_not_finite() const {
+  const auto broken = [](const auto& v) { return !std::isfinite(dot(v, v)); };
+  int first = 0;
+  while (first + 1 < particles.size() && !broken(particles.velocity[first]) && !broken(particles.spin[first]))
+    ++first;
+  throw NumericalError(
+      fmt::format("the velocity of particle {} is not finite; use a smaller time step", first));
 }
 
 template <int Dim>
 Vec<Dim> RigidDynamics<Dim>::wall_impulse(int wall) const {
   Vec<Dim> sum;
   const int body = particles.wall_body(wall);
-  for (int c = 0; c < contacts.size(); ++c) {
+  for (int c = contacts.blocks.back().begin(); c < contacts.size(); ++c) {
     if (contacts.body_b[c] != body) continue;
     sum += contacts.impulse[c][0] * contacts.normal[c];
     const auto t = tangents(contacts.normal[c]);
@@ -118,16 +148,15 @@ StepReport RigidDynamics<Dim>::report(const SolverReport& solver) const {
                     .residual_mean = solver.residual_mean,
                     .residual_max = solver.residual_max,
                     .converged = solver.converged};
-  double sum = 0, deepest = 0;
-  for (int c = 0; c < contacts.size(); ++c) {
-    const bool carries = contacts.impulse[c][0] > 0;
-    const double depth = carries ? std::max(0.0, -contacts.gap[c]) : 0;
-    report.contacts += carries ? 1 : 0;
-    sum += depth;
-    deepest = std::max(deepest, depth);
-  }
-  if (report.contacts > 0) report.overlap_mean = sum / (report.contacts * mean_radius_);
-  report.overlap_max = report.contacts > 0 ? deepest / mean_radius_ : 0;
+  const auto overlaps = parallel_sum<Overlaps>(contacts.size(), [&](int begin, int end) {
+    Overlaps part;
+    for (int c = begin; c < end; ++c)
+      if (contacts.impulse[c][0] > 0) part += {1, std::max(0.0, -contacts.gap[c]), -contacts.gap[c]};
+    return part;
+  });
+  report.contacts = overlaps.contacts;
+  if (report.contacts > 0) report.overlap_mean = overlaps.sum / (report.contacts * mean_radius_);
+  report.overlap_max = overlaps.deepest / mean_radius_;
   return report;
 }
 

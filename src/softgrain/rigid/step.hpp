@@ -58,6 +58,7 @@ class RigidDynamics {
   void kick(const ForceField<Dim>& field, double dt);
   SolverReport solve(double dt);
   void account_work(double dt);
+  [[noreturn]] void throw_not_finite() const;
   StepReport report(const SolverReport& solver) const;
 
   FrictionRule friction_;

@@ -14,7 +14,11 @@ namespace {
 RigidParticles<2> two_grains() {
   auto bodies = test::random_bodies<2>(9, 41);
   for (Vec<2>& x : bodies.position) x *= 1.1;  // overlaps stay below 5 %
-  for (int i = 0; i < bodies.size(); ++i) bodies.grain[i] = i % 3 == 0 ? 1 : 0;
+  const auto places = bodies.position;
+  for (int i = 0; i < bodies.size(); ++i) {
+    bodies.position[i] = places[32 * i % 81];  // 32 and 81 have no common factor: every place once
+    bodies.grain[i] = i < 54 ? 0 : 1;
+  }
   return bodies;
 }
 

@@ -52,27 +52,51 @@ TEST_CASE_TEMPLATE("candidate contacts are the pairs and walls closer than the s
   }
 }
 
-TEST_CASE_TEMPLATE("no two contacts of a batch share a particle, and frictional batches come last", Dimension,
-                   Plane, Space) {
+TEST_CASE_TEMPLATE("contacts inside grains come grain by grain, those between them and with walls last",
+                   Dimension, Plane, Space) {
+  constexpr int Dim = Dimension::value;
+  auto bodies = test::random_bodies<Dim>(Dim == 2 ? 12 : 6, 4);
+  const int n = bodies.size(), size = n / 6;
+  for (int i = 0; i < n; ++i) bodies.grain[i] = i / size;
+  NeighbourReference<Dim> reference{.skin = 0.2, .position = {}, .wall_point = {}};
+  set_reference(reference, bodies);
+  const auto contacts = candidate_contacts(bodies, reference, test::mixed_friction, {});
+  CHECK(listed_pairs(contacts) == pairs_within(bodies, 0.2));
+  CHECK(static_cast<int>(listed_pairs(contacts).size()) == contacts.size());
+  REQUIRE(contacts.blocks.size() == 7);
+  int next = 0;
+  for (int k = 0; k < 7; ++k) {
+    const ContactBlock& block = contacts.blocks[k];
+    CHECK(block.begin() == next);
+    next = block.end();
+    CHECK(block.frictional.begin == block.frictionless.end);
+    for (int c = block.begin(); c < block.end(); ++c) {
+      const int b = contacts.body_b[c];
+      CHECK((k < 6) == (b < n && bodies.grain[contacts.body_a[c]] == bodies.grain[b]));
+      if (k < 6) CHECK(bodies.grain[b] == k);
+      CHECK((contacts.friction[c] > 0) == (c >= block.frictional.begin));
+    }
+  }
+  CHECK(next == contacts.size());
+}
+
+TEST_CASE_TEMPLATE("four contacts that are solved at once share no particle, and few are left over",
+                   Dimension, Plane, Space) {
   constexpr int Dim = Dimension::value;
   const test::ContactScene<Dim> scene(Dim == 2 ? 12 : 6);
   const auto& contacts = scene.contacts;
-  int next = 0;
-  bool friction_begun = false;
-  for (const ContactBatch& batch : contacts.batches) {
-    CHECK(batch.begin == next);
-    next = batch.end;
-    std::set<int> particles;
-    for (int c = batch.begin; c < batch.end; ++c) {
-      CHECK(particles.insert(contacts.body_a[c]).second);
-      if (contacts.body_b[c] < scene.bodies.size()) CHECK(particles.insert(contacts.body_b[c]).second);
-      CHECK((contacts.friction[c] > 0) == batch.frictional);
+  for (const ContactBlock& block : contacts.blocks)
+    for (const ContactBatch& batch : {block.frictionless, block.frictional}) {
+      CHECK((batch.fours_end - batch.begin) % 4 == 0);
+      CHECK(batch.end - batch.fours_end < 12);
+      for (int c = batch.begin; c < batch.fours_end; c += 4) {
+        std::set<int> particles;
+        for (int k = c; k < c + 4; ++k) {
+          CHECK(particles.insert(contacts.body_a[k]).second);
+          if (contacts.body_b[k] < scene.bodies.size()) CHECK(particles.insert(contacts.body_b[k]).second);
+        }
+      }
     }
-    CHECK((batch.frictional || !friction_begun));
-    friction_begun = batch.frictional;
-  }
-  CHECK(next == contacts.size());
-  CHECK(friction_begun);
 }
 
 TEST_CASE("the order of the contacts depends on the reference alone") {
@@ -111,8 +135,9 @@ TEST_CASE_TEMPLATE("impulses follow their two bodies from list to list", Dimensi
   CHECK(fresh > 3);
 }
 
-TEST_CASE("lists are made again once something has moved by 45 % of the skin, walls included") {
+TEST_CASE("lists are made again once two bodies may have approached by 90 % of the skin, walls included") {
   auto bodies = test::random_bodies<2>(5, 2);
+  const int n = bodies.size();
   NeighbourReference<2> reference{.skin = 2, .position = {}, .wall_point = {}};
   CHECK(needs_rebuild(reference, bodies));  // never made
   const int generation = reference.generation;
@@ -121,16 +146,37 @@ TEST_CASE("lists are made again once something has moved by 45 % of the skin, wa
   CHECK_FALSE(needs_rebuild(reference, bodies));
 
   const auto at_rest = bodies;
-  bodies.position[7] += Vec<2>{0.89 * 0.6, 0.89 * 0.8};
+  const double about = 1 - 1.0 / n;  // displacement of one particle about the mean of its grain
+  bodies.position[7] += 0.89 / about * Vec<2>{0.6, 0.8};
   CHECK_FALSE(needs_rebuild(reference, bodies));
-  bodies.position[7] = at_rest.position[7] - Vec<2>{0.91 * 0.6, 0.91 * 0.8};
+  bodies.position[7] = at_rest.position[7] - 0.91 / about * Vec<2>{0.6, 0.8};
   CHECK(needs_rebuild(reference, bodies));
 
   bodies = at_rest;
-  bodies.walls[1].point[1] += 0.89;
+  bodies.walls[1].point[1] += 1.79;
   CHECK_FALSE(needs_rebuild(reference, bodies));
   bodies.walls[1].point[1] += 0.02;
   CHECK(needs_rebuild(reference, bodies));
+}
+
+TEST_CASE("grains that move as a whole need new lists only when they approach another or go far") {
+  // two grains side by side, and a third far away
+  auto bodies = rigid_particles<2>({{0, 0}, {2, 0}, {5, 0}, {7, 0}, {100, 0}, {102, 0}}, {1, 1, 1, 1, 1, 1},
+                                   {1, 1, 1, 1, 1, 1}, {});
+  bodies.grain = {0, 0, 1, 1, 2, 2};
+  NeighbourReference<2> reference{.skin = 0.5, .position = {}, .wall_point = {}};
+  set_reference(reference, bodies);
+  const auto shifted = [&](std::initializer_list<int> particles, const Vec<2>& by) {
+    auto moved = bodies;
+    for (const int i : particles) moved.position[i] += by;
+    return needs_rebuild(reference, moved);
+  };
+  CHECK_FALSE(shifted({0, 1}, {0.44, 0}));
+  CHECK(shifted({0, 1}, {0.46, 0}));
+  CHECK_FALSE(shifted({0, 1, 2, 3}, {0, 1.9}));  // both alike
+  CHECK_FALSE(shifted({4, 5}, {-1.9, 0}));       // nobody is near
+  CHECK(shifted({4, 5}, {-2.1, 0}));             // but somebody might be now
+  CHECK(shifted({0, 1, 2, 3, 4, 5}, {0, 2.1}));
 }
 
 TEST_CASE("gaps and normals lead from a to b, and from a particle into its wall") {

@@ -22,7 +22,7 @@ RigidDynamics<Dim> violent_bodies(int per_side) {
   test::RandomNumbers random(22);
   for (int i = 0; i < bodies.size(); ++i) {
     bodies.velocity[i] = random.vector<Dim>(10);
-    bodies.grain[i] = i % 2;
+    bodies.grain[i] = i / 7;
   }
   const double far = 2.2 * per_side;
   for (int k = 0; k < Dim; ++k) {
