@@ -174,6 +174,12 @@ TEST_CASE("grains that move as a whole need new lists only when they approach an
   CHECK_FALSE(shifted({0, 1}, {0.44, 0}));
   CHECK(shifted({0, 1}, {0.46, 0}));
   CHECK_FALSE(shifted({0, 1, 2, 3}, {0, 1.9}));  // both alike
+  auto facing = bodies;  // two primaries that approach each other, each out of the middle of its grain
+  facing.position[1][0] += 0.3;
+  facing.position[2][0] -= 0.3;
+  CHECK(needs_rebuild(reference, facing));
+  facing.position[2][0] += 0.2;
+  CHECK_FALSE(needs_rebuild(reference, facing));
   CHECK_FALSE(shifted({4, 5}, {-1.9, 0}));       // nobody is near
   CHECK(shifted({4, 5}, {-2.1, 0}));             // but somebody might be now
   CHECK(shifted({0, 1, 2, 3, 4, 5}, {0, 2.1}));
