@@ -9,7 +9,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 
 
 def run(program, case, directory, settings):
-    """Runs the case with the settings, unless it is done, and returns its rows and its record. A run may give up on the way."""
+    """Runs the case with the settings, unless it is done; returns its rows and its record. A run may give up on the way."""
     info = directory / "run.json"
     if not (info.exists() and json.loads(info.read_text())["state"] in ("done", "failed")):
         command = [program, "run", str(case), "-o", str(directory), "--force", "--quiet", "-j", "1",
@@ -49,7 +49,8 @@ def window(rows, phi, low, high):
     vertical = statistics.mean(map(stress, inside))
     return {"stress_MPa": vertical, "side_over_vertical": mean("stress_side") / 1e6 / vertical, "z": mean("z"),
             "bottom_over_top": mean("stress_bottom") / mean("stress_top"), "inertial_number": mean("inertial_number"),
-            "sweeps": mean("sweeps"), "overlap_mean": mean("overlap_mean"), "overlap_max": max(row["overlap_max"] for row in inside)}
+            "sweeps": mean("sweeps"), "overlap_mean": mean("overlap_mean"),
+            "overlap_max": max(row["overlap_max"] for row in inside)}
 
 
 def name_of(labels):

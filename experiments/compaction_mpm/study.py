@@ -2,7 +2,7 @@
 """Twenty elastic grains to a packing fraction above 0.98: friction, Poisson's ratio, cells, implicit against explicit.
 
     study.py runs -o DIR [--program PATH]   eighteen runs -> results/runs.csv, agreement.csv, curves.csv
-    study.py rate|step|cells|tolerance -o DIR [--program PATH]
+    study.py rate|step|cells|tolerance|poisson -o DIR [--program PATH]
                                             three samples of each setting (rate: and one of 300 grains)
                                             -> results/rate.csv, ..., rate.png, ..., law.csv, law.png
     study.py plot -o DIR                    results/packings.png (four stages, mu = 0 and 0.5), results/curves.png
@@ -90,11 +90,13 @@ def runs(program, out):
         packing_series.write(RESULTS / f"{name}.csv", table)
 
 
-def variant(grains=20, cells=8, friction=0, velocity=5, step=5, tolerance=1e-4):
+def variant(grains=20, cells=8, friction=0, velocity=5, step=5, tolerance=1e-4, poisson=0.45, last=0.44):
     """Its labels, its settings and the number of seeds, as packing_series wants them."""
     settings = {"sample.grains": grains, "mpm.cells": cells, "contact.friction": friction, "mpm.tolerance": tolerance,
-                "loading.wall_velocity": f'"{velocity} m/s"', "mpm.time_step": f'"{step} us"'}
-    labels = {"grains": grains, "cells": cells, "mu": friction, "velocity": velocity, "step_us": step, "tolerance": tolerance}
+                "mpm.poisson_ratio": poisson, "loading.max_strain": last, "loading.wall_velocity": f'"{velocity} m/s"',
+                "mpm.time_step": f'"{step} us"'}
+    labels = {"grains": grains, "cells": cells, "mu": friction, "velocity": velocity, "step_us": step, "tolerance": tolerance,
+              "nu": poisson}
     return labels, settings, 1 if grains > 20 else None
 
 
@@ -102,20 +104,24 @@ SERIES = {
     "rate": [variant(friction=mu, velocity=v, step=dt) for mu in (0, 0.5) for v, dt in ((5, 5), (1.5, 10), (0.5, 10))] +
             [variant(grains=300, velocity=v, step=dt) for v, dt in ((5, 5), (0.5, 10))],
     "step": [variant(velocity=v, step=dt) for v, steps in ((5, (10, 5, 2.5)), (0.5, (20, 10, 5))) for dt in steps],
-    "cells": [variant(cells=c, velocity=v, step=dt) for v, dt, cells in ((5, 5, (8, 16, 32)), (0.5, 10, (8, 16))) for c in cells],
+    "cells": [variant(cells=c, velocity=v, step=dt)
+              for v, dt, cells in ((5, 5, (8, 16, 32)), (0.5, 10, (8, 16))) for c in cells],
     "tolerance": [variant(friction=mu, tolerance=t) for mu in (0, 0.5) for t in (1e-3, 1e-4, 1e-5)],
+    "poisson": [variant(velocity=0.5, step=10, poisson=nu, last=eps) for nu, eps in ((0.3, 0.56), (0.45, 0.44), (0.49, 0.36))],
 }
 LABELS = {
     "rate": lambda r: f"{r['grains']} grains, $\\mu$ = {r['mu']}, {r['velocity']} m/s",
     "step": lambda r: f"{r['velocity']} m/s, {r['step_us']} $\\mu$s",
     "cells": lambda r: f"{r['cells']} cells, {r['velocity']} m/s",
     "tolerance": lambda r: f"{r['tolerance']}, $\\mu$ = {r['mu']}",
+    "poisson": lambda r: f"$\\nu$ = {r['nu']}",
 }
 
 
 def series(name, program, out):
     table = RESULTS / f"{name}.csv"
-    packing_series.write(table, packing_series.series(program, HERE / "case.toml", out, SERIES[name], (1, 2, 3), "phi", PHI_WINDOWS))
+    records = packing_series.series(program, HERE / "case.toml", out, SERIES[name], (1, 2, 3), "phi", PHI_WINDOWS)
+    packing_series.write(table, records)
     packing_series.draw(RESULTS / f"{name}.png", packing_series.read(table), LABELS[name], "phi", "packing fraction $\\Phi$")
     if name == "rate":
         import plot_study
