@@ -30,7 +30,7 @@ class BouncingBall : public Simulation {
 
   void follow(PlateMotion) override {}
   StepReport step() override {
-    if (step_ == breaks_at) throw NumericalError("step 17: position of particle 0 is not finite");
+    if (step_ == breaks_at) throw NumericalError("position of particle 0 is not finite");
     if (pause > 0) usleep(pause);
     ++step_;
     velocity_ -= 0.005 * 9.81;
