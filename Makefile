@@ -1,6 +1,6 @@
 # Short names for the commands of everyday work; each recipe also works typed by hand.
 .DEFAULT_GOAL := help
-.PHONY: help demo test check torture bench clean
+.PHONY: help demo test check docs torture bench clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-7s %s\n", $$1, $$2}' Makefile
@@ -19,15 +19,20 @@ test: ## builds with warnings as errors and runs all tests
 	cmake --build --preset dev
 	ctest --preset dev
 
-check: ## format, layers, self-contained headers, clang-tidy
-	@tools/install_dependencies.sh --with checks
+check: ## format, layers, self-contained headers, links of the documentation, clang-tidy
+	@tools/install_dependencies.sh --with checks --with docs
 	cmake --preset dev
 	tools/check_format
 	tools/check_layers --self-test
 	tools/check_layers
 	tools/check_headers
 	tools/check_viewer
+	tools/build_site
 	tools/check_tidy
+
+docs: ## the documentation as a site, build/site/index.html, with every link checked
+	@tools/install_dependencies.sh --with docs
+	tools/build_site
 
 torture: ## long forms of the reliability tests, fuzzers, sanitizers, builds compared (hours)
 	@tools/install_dependencies.sh --with torture

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that softgrain needs; the only place that names them. Does nothing when all are there.
-#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, bench, viewer, torture, clang
+#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, bench, viewer, torture, clang
 #   tools/install_dependencies.sh --list                 the table below
 # Why each was chosen: docs/decisions/0002-dependencies.md
 set -euo pipefail
@@ -35,6 +35,8 @@ pictures   python3-h5py            softgrain plot reads the snapshots
 checks     python3                 tools/check_layers
 checks     clang-format            one format for all sources
 checks     clang-tidy              names and common mistakes
+docs       mkdocs                  the documentation as a site
+docs       libjs-katex             its equations
 bench      libbox2d-dev            a peer to measure against
 bench      libsiconos-numerics-dev a peer to measure against
 viewer     chromium                tests the page of softgrain report
@@ -50,7 +52,7 @@ groups="build libraries python tests pictures"
 while (($#)); do
   case "$1" in
     --list) table && exit 0 ;;
-    --with) groups+=" ${2:?--with needs a group: checks, bench, viewer, torture or clang}" && shift 2 ;;
+    --with) groups+=" ${2:?--with needs a group: checks, docs, bench, viewer, torture or clang}" && shift 2 ;;
     *) sed -n '2,4s/^# //p' "$0" >&2 && exit 2 ;;
   esac
 done
