@@ -65,7 +65,10 @@ void BpmCompaction::judge(const StepReport& report) {
   const double dt = case_.time.step;
   const double stress = (wall_impulse_[bottom_wall] + wall_impulse_[top_wall]) / (2 * dt * width());
   drive_.watch(stress, plate_distance(), step_);
+  const double most = case_.loading.max_overlap;
   if (report.overlap_mean > close_packing_overlap && solid_fraction() > close_packing_fraction)
+    drive_.state.ended = true;
+  else if (most > 0 && report.overlap_mean >= most)
     drive_.state.ended = true;
   else if (report.overlap_mean > largest_overlap)
     throw NumericalError(fmt::format(
@@ -76,6 +79,8 @@ void BpmCompaction::judge(const StepReport& report) {
 
 std::string BpmCompaction::early_end() const {
   if (std::string end = drive_.early_end(step_); !end.empty() || !drive_.state.ended) return end;
+  if (case_.loading.max_overlap > 0 && solid_fraction() <= close_packing_fraction)
+    return "loading.max_overlap is reached";
   return fmt::format(
       "the rigid primaries fill {:.3f} of the box, their random close packing, and overlap by more than {} "
       "of "

@@ -76,6 +76,8 @@ StepReport BpmSimulation::step() {
   sums_.duration += dt;
   sums_.wall_work += dynamics_.work.wall;
   sums_.dissipation -= dynamics_.work.contact;
+  sums_.between -= dynamics_.work.between;
+  sums_.friction -= dynamics_.work.friction;
   judge(report);
   return report;
 }
@@ -131,6 +133,9 @@ std::vector<Quantity> BpmSimulation::row_of(std::vector<Quantity> own) const {
       {"attraction_energy", "J/m", energy.stored + sums_.energy_start},
       {"wall_work", "J/m", energy.wall_work},
       {"dissipation", "J/m", energy.dissipation},
+      {"dissipation_rearrangement", "J/m", energy.dissipation - sums_.between},
+      {"dissipation_contact", "J/m", sums_.between},
+      {"dissipation_friction", "J/m", sums_.friction},
       {"energy_error", "J/m", energy.error()},
   };
   row.insert(row.end(), rest.begin(), rest.end());
@@ -222,8 +227,9 @@ Checkpoint BpmSimulation::checkpoint() const {
   for (const Wall<2>& wall : particles.walls) wall_point.push_back(wall.point);
   state.arrays["wall_point"] = to_array<2>(wall_point);
   std::vector<double> sums(sums_.impulse.begin(), sums_.impulse.end());
-  sums.insert(sums.end(), {sums_.duration, sums_.wall_work, sums_.dissipation, sums_.energy_start,
-                           drive_.state.stress, drive_.state.ended ? 1.0 : 0.0});
+  sums.insert(sums.end(),
+              {sums_.duration, sums_.wall_work, sums_.dissipation, sums_.energy_start, drive_.state.stress,
+               drive_.state.ended ? 1.0 : 0.0, sums_.between, sums_.friction});
   state.arrays["sums"] = {1, std::move(sums)};
   drive_.save_hold(state);
   return state;
@@ -246,7 +252,7 @@ void BpmSimulation::restore(const Checkpoint& state) {
   detect_contacts(particles, dynamics_.contacts);
   attraction_.update(particles, dynamics_.reference);
   from_array<2>(state, "contact_impulse", dynamics_.contacts.impulse);
-  std::vector<Vec<1>> sums(10);
+  std::vector<Vec<1>> sums(12);
   from_array<1>(state, "sums", sums);
   for (std::size_t w = 0; w < 4; ++w) sums_.impulse[w] = sums[w][0];
   sums_.duration = sums[4][0];
@@ -255,6 +261,8 @@ void BpmSimulation::restore(const Checkpoint& state) {
   sums_.energy_start = sums[7][0];
   drive_.state.stress = sums[8][0];
   drive_.state.ended = sums[9][0] != 0;
+  sums_.between = sums[10][0];
+  sums_.friction = sums[11][0];
   drive_.restore_hold(state);
   step_ = state.step;
 }

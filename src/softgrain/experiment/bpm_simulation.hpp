@@ -29,6 +29,7 @@ class BpmSimulation : public Simulation {
   bool at_turning_point() const override { return drive_.at_turning_point(step_); }
   void follow(PlateMotion motion) override { drive_.follow(std::move(motion)); }
   StepReport step() override;
+  SolvedContactProblem step_and_catch_problem() override;
   Scene scene() const override;
   std::vector<GrainView> grains() const override;
   Checkpoint checkpoint() const override;
@@ -47,6 +48,7 @@ class BpmSimulation : public Simulation {
     std::array<double, 4> impulse{};        ///< on each wall, outwards, since the last row [N s/m]
     double duration = 0;                    ///< since the last row [s]
     double wall_work = 0, dissipation = 0;  ///< over the run [J/m]
+    double between = 0, friction = 0;       ///< of the dissipation: between grains; by sliding there
     double energy_start = 0;                ///< kinetic + attraction before the first step [J/m]
   };
 

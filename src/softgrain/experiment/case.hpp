@@ -63,6 +63,7 @@ struct Case {
     double max_strain = 0.35;         ///< strain at the end of loading
     double max_packing_fraction = 0;  ///< Phi_0 at the end, of grains in a box; 0: as max_strain says
     double max_stress = 0;            ///< sigma at the end, of grains in a box [Pa]; 0: any
+    double max_overlap = 0;           ///< mean, of primaries over their radius, at the end, in a box; 0: any
     std::vector<double> unload_at{};  ///< strains at which the plate turns back
     double unload_by = 0.015;         ///< strain given back before loading again
     double hold = 0;                  ///< rest of the plate at each turn and at the end [s]

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/arrays.hpp"
@@ -73,6 +74,17 @@ StepReport MpmSimulation<Dynamics>::step() {
           .converged = soft.converged};
 }
 
+template <class Dynamics>
+SolvedContactProblem MpmSimulation<Dynamics>::step_and_catch_problem() {
+  if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>) {
+    dynamics_.caught.emplace();
+    step();
+    return *std::exchange(dynamics_.caught, std::nullopt);
+  } else {
+    return Simulation::step_and_catch_problem();
+  }
+}
+
 /// Outward force on a wall [N/m], mean since the last row.
 template <class Dynamics>
 double MpmSimulation<Dynamics>::wall_force(int wall) const {
@@ -99,6 +111,7 @@ std::vector<Quantity> MpmSimulation<Dynamics>::energies() const {
           {"wall_work", "J/m", work.walls},
           {"dissipation", "J/m", work.contacts + by_integration},
           {"dissipation_contact", "J/m", work.contacts},
+          {"dissipation_friction", "J/m", work.friction},
           {"dissipation_integration", "J/m", by_integration},
           {"energy_error", "J/m",
            work.walls + work.gravity - kinetic - work.internal - work.inertia - work.contacts}};
@@ -191,7 +204,7 @@ Checkpoint MpmSimulation<Dynamics>::checkpoint() const {
   std::vector<double> sums(sums_.impulse.begin(), sums_.impulse.end());
   sums.insert(sums.end(), {sums_.duration, sums_.iterations, sums_.rejected, drive_.state.stress,
                            drive_.state.ended ? 1.0 : 0.0, dynamics_.impulse_time, work.walls, work.gravity,
-                           work.internal, work.contacts, work.inertia});
+                           work.internal, work.contacts, work.inertia, work.friction});
   state.arrays["sums"] = {1, std::move(sums)};
   drive_.save_hold(state);
   return state;
@@ -242,7 +255,7 @@ void MpmSimulation<Dynamics>::restore(const Checkpoint& state) {
   std::vector<Vec<2>> wall_point(dynamics_.walls.size());
   from_array<2>(state, "wall_point", wall_point);
   for (std::size_t w = 0; w < wall_point.size(); ++w) dynamics_.walls[w].point = wall_point[w];
-  std::vector<Vec<1>> sums(15);
+  std::vector<Vec<1>> sums(16);
   from_array<1>(state, "sums", sums);
   for (std::size_t w = 0; w < 4; ++w) sums_.impulse[w] = sums[w][0];
   sums_.duration = sums[4][0];
@@ -256,6 +269,7 @@ void MpmSimulation<Dynamics>::restore(const Checkpoint& state) {
                     .gravity = sums[11][0],
                     .internal = sums[12][0],
                     .contacts = sums[13][0],
+                    .friction = sums[15][0],
                     .inertia = sums[14][0]};
   step_ = state.step;
 }

@@ -94,6 +94,8 @@ std::vector<Key> all_keys() {
           "packing fraction Phi_0 of the undeformed grains at the end, if max_strain comes later; 0: none (in a box)"),
       KEY(loading.max_stress, "MPa", at_least(0),
           "vertical stress at the end, mean of lid and bottom over 0.1 % of strain; 0: none (in a box)"),
+      KEY(loading.max_overlap, "", from_to(0, 0.05),
+          "mean overlap of primaries in contact, over their mean radius, at the end; 0: none (bpm in a box)"),
       KEY(loading.unload_at, "", positive(),
           "ascending strains at which the plate turns back once; [] for none"),
       KEY(loading.unload_by, "", positive(), "strain given back before loading again"),

@@ -6,7 +6,9 @@ void add_contact_work(std::span<const OutlineContact> contacts, std::span<const 
                       const OutlineState& state, WorkBudget& work, std::span<Vec<2>> wall_impulse) {
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Vec<2> P = impulse_vector(contacts[c], impulse[c]);
-    work.contacts -= dot(P, relative_displacement(contacts[c], state)) / state.dt;
+    const Vec<2> u = (1 / state.dt) * relative_displacement(contacts[c], state);
+    work.contacts -= dot(P, u);
+    work.friction -= impulse[c][1] * dot(perpendicular(contacts[c].normal), u);
     const int wall = contacts[c].wall;
     if (wall < 0) continue;
     wall_impulse[wall] -= P;

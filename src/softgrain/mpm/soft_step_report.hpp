@@ -11,6 +11,7 @@ struct WorkBudget {
   double gravity = 0;   ///< sum of m g . dx
   double internal = 0;  ///< sum of f_int . dx: the elastic energy, and what integration loses of it
   double contacts = 0;  ///< -sum of p . u: taken by contacts
+  double friction = 0;  ///< of `contacts`: by sliding
   double inertia = 0;   ///< backward Euler's sum of m (dv)^2/2
 };
 

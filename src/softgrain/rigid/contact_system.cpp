@@ -59,15 +59,23 @@ Mat<Dim> RigidContactSystem<Dim>::delassus_block(int contact) const {
 }
 
 template <int Dim>
-Vec<Dim> RigidContactSystem<Dim>::relative_velocity(int contact) const {
-  const int a = contacts_.body_a[contact], b = contacts_.body_b[contact];
-  const Vec<Dim>& n = contacts_.normal[contact];
-  const Vec<Dim> along = particles_.velocity[b] - particles_.velocity[a];
-  const Vec<Dim> slip = along - surface_velocity(particles_.spin[a] + particles_.spin[b], n);
+Vec<Dim> relative_velocity(const RigidContacts<Dim>& contacts, int contact,
+                           std::span<const Vec<Dim>> velocity, std::span<const Spin<Dim>> spin) {
+  const int a = contacts.body_a[contact], b = contacts.body_b[contact];
+  const Vec<Dim>& n = contacts.normal[contact];
+  const Vec<Dim> along = velocity[b] - velocity[a];
+  const Vec<Dim> slip = along - surface_velocity(spin[a] + spin[b], n);
   Vec<Dim> u;
-  u[0] = dot(n, along) + offset_[contact];
+  u[0] = dot(n, along);
   const auto t = tangents(n);
   for (int k = 1; k < Dim; ++k) u[k] = dot(t[k - 1], slip);
+  return u;
+}
+
+template <int Dim>
+Vec<Dim> RigidContactSystem<Dim>::relative_velocity(int contact) const {
+  Vec<Dim> u = softgrain::relative_velocity<Dim>(contacts_, contact, particles_.velocity, particles_.spin);
+  u[0] += offset_[contact];
   return u;
 }
 
@@ -168,6 +176,10 @@ template void signorini_offset<2>(const RigidContacts<2>&, std::span<const Vec<2
                                   std::vector<double>&);
 template void signorini_offset<3>(const RigidContacts<3>&, std::span<const Vec<3>>, const ContactLaw&, double,
                                   std::vector<double>&);
+template Vec<2> relative_velocity<2>(const RigidContacts<2>&, int, std::span<const Vec<2>>,
+                                     std::span<const Spin<2>>);
+template Vec<3> relative_velocity<3>(const RigidContacts<3>&, int, std::span<const Vec<3>>,
+                                     std::span<const Spin<3>>);
 template class RigidContactSystem<2>;
 template class RigidContactSystem<3>;
 

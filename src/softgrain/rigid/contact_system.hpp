@@ -34,6 +34,11 @@ template <int Dim>
 void signorini_offset(const RigidContacts<Dim>& contacts, std::span<const Vec<Dim>> velocity_start,
                       const ContactLaw& law, double dt, std::vector<double>& offset);
 
+/// u of a contact in its local axes [m/s], from the velocities and spins of the bodies.
+template <int Dim>
+Vec<Dim> relative_velocity(const RigidContacts<Dim>& contacts, int contact,
+                           std::span<const Vec<Dim>> velocity, std::span<const Spin<Dim>> spin);
+
 /// Rigid disks and spheres as a ContactSystem: the bodies' velocities carry all impulses, W is never formed.
 ///
 /// With spins s = R omega and kappa = m R^2/I (theory (12)):

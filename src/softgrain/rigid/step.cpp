@@ -117,6 +117,20 @@ void RigidDynamics<Dim>::account_work(double dt) {
   for (int w = 0; w < static_cast<int>(particles.walls.size()); ++w)
     work.wall -= dot(wall_impulse(w), particles.walls[w].velocity);
   work.contact = sum[1] - work.force - work.wall;
+  account_contacts();
+}
+
+/// A contact does p . (u + u+)/2.
+template <int Dim>
+void RigidDynamics<Dim>::account_contacts() {
+  for (int c = contacts.blocks.back().begin(); c < contacts.size(); ++c) {
+    const Vec<Dim>& p = contacts.impulse[c];
+    if (p[0] == 0) continue;
+    const Vec<Dim> u = 0.5 * (relative_velocity<Dim>(contacts, c, velocity_start_, spin_start_) +
+                              relative_velocity<Dim>(contacts, c, particles.velocity, particles.spin));
+    work.between += dot(p, u);
+    work.friction += dot(p, u) - p[0] * u[0];
+  }
 }
 
 template <int Dim>

@@ -22,11 +22,14 @@ struct RigidStepOptions {
   ContactLaw law;
 };
 
-/// Work done in one step by each cause [J/m in 2D]; their sum is the change of kinetic energy, to round-off.
+/// Work done in one step by each cause [J/m in 2D]; the sum of force, contact and wall is the change
+/// of kinetic energy, to round-off.
 struct StepWork {
   double force = 0;    ///< by the force field
   double contact = 0;  ///< by contact impulses in the frame of the contact: minus the energy dissipated there
   double wall = 0;     ///< by moving walls
+  double between = 0;  ///< of `contact`: between grains and with walls
+  double friction = 0;  ///< of `between`: by sliding
 };
 
 /// Rigid particles under contact dynamics: state, lists and scratch of the step. `friction` and the force
@@ -58,6 +61,7 @@ class RigidDynamics {
   void kick(const ForceField<Dim>& field, double dt);
   SolverReport solve(double dt);
   void account_work(double dt);
+  void account_contacts();
   [[noreturn]] void throw_not_finite() const;
   StepReport report(const SolverReport& solver) const;
 

@@ -224,6 +224,23 @@ TEST_CASE("a packing at rest has the stress of its walls by Love and Weber, and 
   CHECK(std::abs(sigma(0, 1) - sigma(1, 0)) < 0.02 * sigma(1, 1));
 }
 
+TEST_CASE("an overlap that is asked for ends a compaction before the close packing") {
+  Case c = small_case();
+  c.loading.max_overlap = 2e-5;
+  BpmCompaction simulation(c);
+  double overlap = 0;
+  while (!simulation.finished()) {
+    CHECK(overlap < 2e-5);
+    overlap = simulation.step().overlap_mean;
+  }
+  CHECK(overlap >= 2e-5);
+  CHECK(simulation.early_end() == "loading.max_overlap is reached");
+  auto row = row_of(simulation);
+  CHECK(row["dissipation_friction"] == 0);
+  CHECK(row["dissipation_rearrangement"] > 0);
+  CHECK(row["dissipation_contact"] + row["dissipation_rearrangement"] == doctest::Approx(row["dissipation"]));
+}
+
 TEST_CASE("a stress ends the compaction") {
   Case c = small_case();
   c.loading.max_stress = 2e5;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "softgrain/mpm/contact_work.hpp"
 #include "support/soft_grains.hpp"
 
 using namespace softgrain;
@@ -254,4 +255,18 @@ TEST_CASE("the gap of a contact follows its vertex along the curve") {
       brute_force(grains, state, 1 - grains.grain_of_vertex(c.vertex), state.position[c.vertex]);
   CHECK(gap_now(c, state) ==
         doctest::Approx(dot(state.position[c.vertex] - facing.place, facing.normal)).epsilon(1e-3));
+}
+
+TEST_CASE("contacts take the work of their impulses, and friction its part along the contact") {
+  const OutlineState state{
+      .position = {{0.03, -0.01}}, .start = {{0, 0}}, .walls = {test::floor_at(0)}, .dt = 0.1};
+  const std::vector<OutlineContact> contacts{{.vertex = 0, .wall = 0, .normal = {0, 1}}};
+  const std::vector<Vec<2>> impulse{{2, 0.5}};  // (p_n, p_t), t = (-1, 0): P = (-0.5, 2)
+  WorkBudget work;
+  std::vector<Vec<2>> wall_impulse(1);
+  add_contact_work(contacts, impulse, state, work, wall_impulse);
+  CHECK(work.contacts == doctest::Approx(0.5 * 0.3 + 2 * 0.1));
+  CHECK(work.friction == doctest::Approx(0.5 * 0.3));
+  CHECK(work.walls == 0);
+  CHECK(wall_impulse[0] == Vec<2>{0.5, -2});
 }

@@ -212,6 +212,52 @@ TEST_CASE("warm start solves a resting column in one sweep") {
   CHECK(dynamics.step(gravity, 1e-3).sweeps == 1);
 }
 
+TEST_CASE("a disk that slides until it rolls loses a third of its energy to friction, and none else") {
+  // from v_0 to 2/3 v_0 with v = R omega: m v_0^2/2 - 3/4 m (2/3 v_0)^2 = m v_0^2/6
+  constexpr double v_0 = 3, mass = 2;
+  const Wall<2> floor{.point = {0, 0}, .normal = {0, 1}, .velocity = {}};
+  RigidDynamics<2> dynamics(
+      rigid_particles<2>({{0, 1}}, {1}, {mass}, {floor}), [](int, int) { return 0.3; },
+      {.solver = {.max_sweeps = 100, .tolerance = 1e-12}, .law = {}}, 0.5);
+  dynamics.particles.velocity[0] = {v_0, 0};
+  const auto gravity = [](const auto&, auto force) { force[0][1] -= 9.81 * mass; };
+  double friction = 0, between = 0, all = 0;
+  for (int step = 0; step < 600; ++step) {
+    dynamics.step(gravity, 1e-3);
+    friction += dynamics.work.friction;
+    between += dynamics.work.between;
+    all += dynamics.work.contact;
+  }
+  CHECK(dynamics.particles.velocity[0][0] == doctest::Approx(2 * v_0 / 3));
+  CHECK(friction == doctest::Approx(-mass * v_0 * v_0 / 6));
+  CHECK(between == doctest::Approx(friction));
+  CHECK(all == doctest::Approx(friction));
+}
+
+TEST_CASE("what contacts inside a grain take is not counted as between grains") {
+  // two pairs of disks; one pair collides inside its grain, then the grains meet
+  auto disks = rigid_particles<2>({{0, 0}, {2.01, 0}, {9, 0}, {11.02, 0}}, {1, 1, 1, 1}, {1, 1, 1, 1}, {});
+  disks.grain = {0, 0, 1, 1};
+  disks.velocity[0] = {1, 0};
+  RigidDynamics<2> dynamics(std::move(disks), frictionless,
+                            {.solver = {.max_sweeps = 1000, .tolerance = 1e-12}, .law = {}}, 0.5);
+  const auto pass = [&](int steps) {
+    double between = 0, all = 0;
+    for (int step = 0; step < steps; ++step) {
+      dynamics.step(no_force<2>, 0.01);
+      between += dynamics.work.between, all += dynamics.work.contact;
+    }
+    return std::array<double, 2>{between, all};
+  };
+  const auto inside = pass(100);  // both go on with 1/2
+  CHECK(inside[0] == 0);
+  CHECK(inside[1] == doctest::Approx(-0.25));
+  const auto outside = pass(1500);  // three with 1/3, then four with 1/4: from 1/4 to 1/8
+  CHECK(outside[1] == doctest::Approx(-0.125));
+  CHECK(outside[0] < -0.05);
+  CHECK(outside[0] > outside[1]);
+}
+
 TEST_CASE("coincident centres and forces that are not finite end with a NumericalError") {
   auto twins = rigid_particles<2>({{0, 0}, {0, 0}}, {1, 1}, {1, 1}, {});
   RigidDynamics<2> coincident(twins, frictionless, {}, 0.5);
