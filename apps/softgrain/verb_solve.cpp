@@ -1,10 +1,13 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <ctime>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "softgrain/contact/contact_problem.hpp"
 #include "softgrain/core/error.hpp"
@@ -25,21 +28,23 @@ struct SolveOptions {
 
 struct Outcome {
   ContactProblem problem;
+  std::optional<double> stored_residual;  ///< of the file's own solution, if it has impulses
   ContactSolution solution;
   double cpu_seconds = 0;  ///< of solving, without reading
 };
 
 void print_json(const SolveOptions& options, const Outcome& outcome) {
-  const nlohmann::ordered_json result{{"file", options.path},
-                                      {"method", options.method},
-                                      {"contacts", outcome.problem.contacts()},
-                                      {"dimension", outcome.problem.dimension},
-                                      {"sweeps", outcome.solution.sweeps},
-                                      {"natural_map_residual", outcome.solution.residual},
-                                      {"energy", outcome.solution.energy},
-                                      {"cpu_seconds", outcome.cpu_seconds},
-                                      {"converged", outcome.solution.converged},
-                                      {"tolerance", options.solver.tolerance}};
+  nlohmann::ordered_json result{{"file", options.path},
+                                {"method", options.method},
+                                {"contacts", outcome.problem.contacts()},
+                                {"dimension", outcome.problem.dimension},
+                                {"sweeps", outcome.solution.sweeps},
+                                {"natural_map_residual", outcome.solution.residual},
+                                {"energy", outcome.solution.energy},
+                                {"cpu_seconds", outcome.cpu_seconds},
+                                {"converged", outcome.solution.converged},
+                                {"tolerance", options.solver.tolerance}};
+  if (outcome.stored_residual) result["stored_residual"] = *outcome.stored_residual;
   fmt::print("{}\n", result.dump(2));
 }
 
@@ -55,13 +60,18 @@ void print_table(const SolveOptions& options, const Outcome& outcome) {
       options.method == "nlgs" ? "sweeps" : "iterations", solution.residual,
       solution.converged ? "converged to" : "NOT converged to", options.solver.tolerance, solution.energy,
       outcome.cpu_seconds);
+  if (outcome.stored_residual)
+    fmt::print("stored    residual {:.10e} of the solution in the file\n", *outcome.stored_residual);
 }
 
 void solve(SolveOptions& options) {
   require(options.solver.tolerance >= 0, "--tolerance must be >= 0, got {}", options.solver.tolerance);
   options.solver.method = options.method == "nlgs" ? ContactMethod::nlgs : ContactMethod::nesterov;
   Outcome outcome;
-  outcome.problem = read_fclib(options.path).problem;
+  FclibFile file = read_fclib(options.path);
+  outcome.problem = std::move(file.problem);
+  if (std::ranges::any_of(file.stored_impulse, [](double p) { return p != 0; }))
+    outcome.stored_residual = assess_impulses({outcome.problem, file.stored_impulse}, 0).residual;
   const std::clock_t start = std::clock();
   outcome.solution = solve_contact_problem(outcome.problem, options.solver);
   outcome.cpu_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;

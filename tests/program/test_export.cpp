@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -56,4 +57,41 @@ TEST_CASE("paraview gets a script that names the files of the run") {
   const std::string script = read_text(folder.path() / "run/paraview/scene.py");
   CHECK(script.find((folder.path() / "run/paraview").string()) != std::string::npos);
   CHECK(call(folder, {"paraview", "nothing"}).exit_code == 2);
+}
+
+TEST_CASE("the contact problem of a step is exported, and solve finds it as the step left it") {
+  struct Model {
+    const char *name, *settings;
+  };
+  for (const Model& model : {Model{"bpm", "[bpm]\nprimaries = 20\n"}, Model{"mpm", "[mpm]\ncells = 4\n"}}) {
+    CAPTURE(model.name);
+    const TemporaryDirectory folder;
+    const auto path = folder.file(
+        "case.toml",
+        std::string("[experiment]\nmodel = \"") + model.name +
+            "\"\nloading = \"compaction\"\n[sample]\ngrains = 6\npacking_fraction = 0.5\n" + model.settings +
+            "[contact]\nfriction = 0.3\n[loading]\nmax_strain = 0.45\nwall_velocity = \"5 m/s\"\n"
+            "[output]\nsnapshots = 4\nreport = false\n");
+    const auto made = call(folder, {"run", path, "-o", "run", "--quiet"});
+    REQUIRE_MESSAGE(made.exit_code == 0, made.err);
+    const auto record = nlohmann::json::parse(read_text(folder.path() / "run/run.json"));
+    const std::string step = std::to_string(9 * record.at("report").at("steps").get<int>() / 10);
+    const auto exported = call(folder, {"export", "run", "--to", "fclib", "--step", step, "-o", "p.hdf5"});
+    REQUIRE_MESSAGE(exported.exit_code == 0, exported.err);
+    const double residual = std::stod(exported.out.substr(exported.out.find("residual ") + 9));
+    const auto solved = call(folder, {"solve", "p.hdf5", "--json"});
+    CHECK_MESSAGE(solved.exit_code == 0, solved.out);
+    const auto json = nlohmann::json::parse(solved.out);
+    CHECK(residual > 0);
+    CHECK(json.at("contacts") > 10);
+    CHECK(json.at("stored_residual").get<double>() == doctest::Approx(residual).epsilon(1e-10));
+    CHECK(json.at("natural_map_residual") <= 1e-8);
+
+    CHECK(call(folder, {"export", "run", "--to", "fclib"}).exit_code == 2);
+    CHECK(call(folder, {"export", "run", "--to", "fclib", "--step", "0"}).exit_code == 2);
+    CHECK(call(folder, {"export", "run", "--to", "csv", "--step", "3"}).exit_code == 2);
+    const auto late = call(folder, {"export", "run", "--to", "fclib", "--step", "99999"});
+    CHECK(late.exit_code == 2);
+    CHECK(late.err.find("has no step 99999: it ended after") != std::string::npos);
+  }
 }

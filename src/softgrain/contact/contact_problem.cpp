@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 
+#include "softgrain/contact/assemble.hpp"
 #include "softgrain/contact/nesterov.hpp"
 #include "softgrain/contact/nlgs.hpp"
 
@@ -20,13 +21,6 @@ std::vector<Vec<Dim>> local_vectors(const std::vector<double>& numbers) {
   return vectors;
 }
 
-template <int Dim>
-std::vector<double> flat(const std::vector<Vec<Dim>>& vectors) {
-  std::vector<double> numbers;
-  for (const Vec<Dim>& v : vectors) numbers.insert(numbers.end(), v.c.begin(), v.c.end());
-  return numbers;
-}
-
 /// What p is worth: everything but the number of sweeps.
 template <int Dim>
 ContactSolution assess(const DelassusSystem<Dim>& system, const std::vector<Vec<Dim>>& p,
@@ -37,7 +31,7 @@ ContactSolution assess(const DelassusSystem<Dim>& system, const std::vector<Vec<
     u[c] = system.relative_velocity(c);
     q_square += dot(system.free_velocity()[c], system.free_velocity()[c]);
   }
-  ContactSolution solution{.impulse = flat(p), .velocity = flat(u)};
+  ContactSolution solution{.impulse = flat<Dim>(p), .velocity = flat<Dim>(u)};
   solution.residual =
       natural_map_residual<Dim>(p, u, problem.friction) / (q_square > 0 ? std::sqrt(q_square) : 1);
   solution.energy = contact_energy<Dim>(p, u, system.free_velocity());
@@ -74,7 +68,34 @@ ContactSolution solve(const ContactProblem& problem, const ContactProblemOptions
   return iterate<Dim>(system, p, problem, options, [&] { nesterov.advance(); });
 }
 
+template <int Dim>
+ContactSolution assess(const SolvedContactProblem& solved) {
+  const ContactProblem& problem = solved.problem;
+  DelassusSystem<Dim> system(problem.W, local_vectors<Dim>(problem.q));
+  const std::vector<Vec<Dim>> p = local_vectors<Dim>(solved.impulse);
+  for (int c = 0; c < system.size(); ++c) system.apply_impulse(c, p[c]);
+  return assess<Dim>(system, p, problem);
+}
+
 }  // namespace
+
+SolvedContactProblem in_natural_units(SolvedContactProblem solved) {
+  ContactProblem& problem = solved.problem;
+  double sum = 0;
+  for (const MatrixEntry& entry : problem.W)
+    if (entry.row == entry.column && entry.row % problem.dimension == 0) sum += entry.value;
+  if (!(sum > 0)) return solved;
+  const double unit = problem.contacts() / sum;
+  for (MatrixEntry& entry : problem.W) entry.value *= unit;
+  for (double& p : solved.impulse) p /= unit;
+  return solved;
+}
+
+ContactSolution assess_impulses(const SolvedContactProblem& solved, double tolerance) {
+  ContactSolution solution = solved.problem.dimension == 2 ? assess<2>(solved) : assess<3>(solved);
+  solution.converged = solution.residual <= tolerance;
+  return solution;
+}
 
 ContactSolution solve_contact_problem(const ContactProblem& problem, const ContactProblemOptions& options) {
   return problem.dimension == 2 ? solve<2>(problem, options) : solve<3>(problem, options);

@@ -16,6 +16,16 @@ struct ContactProblem {
   int contacts() const { return static_cast<int>(friction.size()); }
 };
 
+/// A problem, and the impulses that somebody found for it.
+struct SolvedContactProblem {
+  ContactProblem problem;
+  std::vector<double> impulse;  ///< p [N s], length dimension x contacts
+};
+
+/// The same problem with impulses in units that make the mean W_nn 1 (1/W_nn kg instead of kg): W and p
+/// become of the order of 1 and u, and the natural map, which adds p to u, weighs them alike.
+SolvedContactProblem in_natural_units(SolvedContactProblem solved);
+
 enum class ContactMethod { nesterov, nlgs };
 
 struct ContactProblemOptions {
@@ -33,6 +43,9 @@ struct ContactSolution {
   double energy = 0;       ///< 1/2 p.W p + q.p [J]
   bool converged = false;  ///< residual <= tolerance
 };
+
+/// What given impulses are worth, with 0 sweeps; `tolerance` decides whether they count as converged.
+ContactSolution assess_impulses(const SolvedContactProblem& solved, double tolerance);
 
 /// Solves from p = 0 until the tolerance, max_sweeps, or a residual that has not fallen for 20 000 sweeps and
 /// four fifths of all.

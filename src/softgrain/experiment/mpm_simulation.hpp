@@ -32,6 +32,7 @@ class MpmSimulation final : public Simulation {
   std::string early_end() const override { return drive_.early_end(step_); }
   void follow(PlateMotion motion) override { drive_.follow(std::move(motion)); }
   StepReport step() override;
+  SolvedContactProblem step_and_catch_problem() override;
   std::vector<Quantity> observe() override;
   Scene scene() const override { return soft_scene(view()); }
   std::vector<GrainView> grains() const override { return grain_views(dynamics_.grains); }

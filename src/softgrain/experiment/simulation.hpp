@@ -61,6 +61,8 @@ struct PlateMotion {
       velocity;  ///< of time [s]: rate of the distance of the plates [m/s], negative while loading
 };
 
+struct SolvedContactProblem;
+
 /// The one abstract class: an experiment with a model of a grain, advanced step by step.
 class Simulation {
  public:
@@ -80,6 +82,10 @@ class Simulation {
   /// Advances by one time step. Raises NumericalError when the state is not finite or the overlap shows that
   /// no solution exists.
   virtual StepReport step() = 0;
+  /// Advances by one time step too, and returns the contact problem that was solved in it, with its impulses
+  /// per metre of depth; where a step solves several, the last. Raises UsageError where no such problem can
+  /// be had.
+  virtual SolvedContactProblem step_and_catch_problem();
   /// The row of series.csv now. Wall forces are means over the steps since the last call of `observe`.
   virtual std::vector<Quantity> observe() = 0;
   virtual Scene scene() const = 0;

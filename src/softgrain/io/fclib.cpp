@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/io/file.hpp"
 #include "softgrain/io/hdf5_file.hpp"
 
 namespace softgrain {
@@ -183,6 +184,7 @@ FclibFile read_problem(const Datasets& file) {
   } else {
     read_global(file, problem);
   }
+  if (file.has("/solution/r")) result.stored_impulse = file.vector("/solution/r", size);
   if (file.has("/solution/u")) result.stored_velocity = file.vector("/solution/u", size);
   return result;
 }
@@ -197,6 +199,39 @@ FclibFile read_fclib(const std::filesystem::path& file) {
     throw UsageError(
         fmt::format("{}; softgrain reads contact problems in FCLIB's HDF5 format", error.what()));
   }
+}
+
+void write_fclib(const std::filesystem::path& file, const SolvedContactProblem& solved) {
+  const ContactProblem& problem = solved.problem;
+  const auto size = static_cast<std::int64_t>(problem.q.size());
+  std::vector<MatrixEntry> W = problem.W;
+  std::ranges::stable_sort(W, {}, [](const MatrixEntry& e) { return std::pair(e.column, e.row); });
+  std::vector<std::int64_t> start(problem.q.size() + 1), row;
+  std::vector<double> value;
+  for (const MatrixEntry& entry : W) {
+    ++start[static_cast<std::size_t>(entry.column) + 1];
+    row.push_back(entry.row);
+    value.push_back(entry.value);
+  }
+  for (std::size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];
+
+  Hdf5Writer writer(file.string());
+  const auto put_integer = [&](const std::string& path, std::int64_t number) {
+    writer.write(path, {.columns = 1, .values = std::vector<std::int64_t>{number}});
+  };
+  put_integer("/fclib_local/spacedim", problem.dimension);
+  put_integer("/fclib_local/W/m", size);
+  put_integer("/fclib_local/W/n", size);
+  put_integer("/fclib_local/W/nz", -1);  // compressed columns
+  put_integer("/fclib_local/W/nzmax", static_cast<std::int64_t>(value.size()));
+  writer.write("/fclib_local/W/p", {.columns = 1, .values = std::move(start)});
+  writer.write("/fclib_local/W/i", {.columns = 1, .values = std::move(row)});
+  writer.write("/fclib_local/W/x", {.columns = 1, .values = std::move(value)});
+  writer.write("/fclib_local/vectors/mu", {.columns = 1, .values = problem.friction});
+  writer.write("/fclib_local/vectors/q", {.columns = 1, .values = problem.q});
+  writer.write("/solution/r", {.columns = 1, .values = solved.impulse});
+  writer.write("/solution/u", {.columns = 1, .values = assess_impulses(solved, 0).velocity});
+  write_file(file, writer.finish());
 }
 
 }  // namespace softgrain

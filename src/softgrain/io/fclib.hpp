@@ -9,6 +9,7 @@ namespace softgrain {
 struct FclibFile {
   ContactProblem problem;
   std::vector<double> stored_velocity;  ///< u of the file's own solution (solution/u), or empty
+  std::vector<double> stored_impulse;   ///< r of the same (solution/r), or empty; many files hold zeros
 };
 
 /// Reads a problem of FCLIB's HDF5 format (Acary et al., "FCLIB: a collection of discrete 3D frictional
@@ -18,5 +19,8 @@ struct FclibFile {
 /// missing or mismatched data, NaN, indices outside the matrix, mu < 0, spacedim other than 2 or 3, equality
 /// constraints, singular M.
 FclibFile read_fclib(const std::filesystem::path& file);
+
+/// Writes a local problem, W by compressed columns, with its solution (u and r). Raises IoError.
+void write_fclib(const std::filesystem::path& file, const SolvedContactProblem& solved);
 
 }  // namespace softgrain

@@ -1,7 +1,14 @@
+#include "softgrain/contact/assemble.hpp"
 #include "softgrain/mpm/contact_work.hpp"
 #include "softgrain/mpm/implicit_step.hpp"
 
 namespace softgrain {
+
+/// Before the contacts are found anew: the system of the last iteration, free of impulses.
+void ImplicitDynamics::catch_problem(double dt) {
+  ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt);
+  caught = {contact_problem_of<2>(system, friction_of_contacts()), flat<2>(impulse)};
+}
 
 /// What Newton's tolerance left of sum_i m_i (v - v_n)_i = dt f_ext + H p is given back to each grain as a
 /// whole.

@@ -244,6 +244,7 @@ ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& re
       batch.velocity[i] = Wide(1 / dt) * (batch.position[i] - start_[b][i]);
   });
   if (!none_failed(failed)) return Failure::inverted_point;
+  if (caught) catch_problem(dt);
   balance_momentum(dt);
   grains.gather_outline(outline_.position);
   add_work();

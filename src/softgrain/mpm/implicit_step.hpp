@@ -1,7 +1,9 @@
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "softgrain/contact/contact_problem.hpp"
 #include "softgrain/contact/solver_options.hpp"
 #include "softgrain/mpm/elastic_contacts.hpp"
 #include "softgrain/mpm/outline_contacts.hpp"
@@ -48,6 +50,8 @@ class ImplicitDynamics {
   std::vector<Vec<2>> impulse;           ///< theirs (p_n, p_t) [N s/m]
   double impulse_time = 0;               ///< the (sub-)step over which they acted [s]
   WorkBudget work;                       ///< since the start
+  /// Unless empty: becomes the last contact problem of every step.
+  std::optional<SolvedContactProblem> caught;
 
  private:
   enum class Failure { none, inverted_point, indefinite_matrix, not_finite, too_far, no_convergence };
@@ -57,6 +61,7 @@ class ImplicitDynamics {
   Failure residual(double dt);
   bool solve_contacts(double dt, SoftStepReport& report);
   double correct();
+  void catch_problem(double dt);
   Failure finish(double dt, SoftStepReport& report);
   void balance_momentum(double dt);
   void add_work();

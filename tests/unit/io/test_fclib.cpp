@@ -190,3 +190,26 @@ TEST_CASE("what is no HDF5 file, or half of one, is the user's mistake") {
             "half", whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))))),
         UsageError);
 }
+
+TEST_CASE("a problem that is written comes back with every entry, and its solution too") {
+  const SolvedContactProblem solved{
+      .problem = {.dimension = 2,
+                  .W = {{0, 0, 2}, {3, 0, 5}, {1, 1, 3}, {2, 2, 6}, {1, 2, 4}, {3, 3, 7}},
+                  .q = {-1, 2, -3, 4},
+                  .friction = {0.3, 0.4}},
+      .impulse = {0.5, 0.1, 0.5, -0.2}};
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "problem.hdf5";
+  write_fclib(path, solved);
+  const FclibFile file = read_fclib(path);
+  CHECK(file.problem.q == solved.problem.q);
+  CHECK(file.problem.friction == solved.problem.friction);
+  CHECK(file.problem.dimension == 2);
+  CHECK(file.stored_impulse == solved.impulse);
+  Eigen::Matrix4d read = Eigen::Matrix4d::Zero(), written = read;
+  for (const MatrixEntry& entry : file.problem.W) read(entry.row, entry.column) += entry.value;
+  for (const MatrixEntry& entry : solved.problem.W) written(entry.row, entry.column) += entry.value;
+  CHECK(read == written);
+  const Eigen::Vector4d u = written * Eigen::Vector4d(0.5, 0.1, 0.5, -0.2) + Eigen::Vector4d(-1, 2, -3, 4);
+  for (int k = 0; k < 4; ++k) CHECK(file.stored_velocity[k] == doctest::Approx(u[k]));
+}
