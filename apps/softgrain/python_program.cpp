@@ -19,11 +19,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string python() {
-  const char* chosen = std::getenv("SOFTGRAIN_PYTHON");
-  return chosen != nullptr && *chosen != '\0' ? chosen : "/usr/bin/python3";
-}
-
 /// Empty if the system does not tell.
 fs::path own_path() {
   std::error_code unknown;
@@ -40,8 +35,17 @@ fs::path package() {
 
 }  // namespace
 
+std::string python_interpreter() {
+  const char* chosen = std::getenv("SOFTGRAIN_PYTHON");
+  return chosen != nullptr && *chosen != '\0' ? chosen : "/usr/bin/python3";
+}
+
+std::vector<fs::path> python_paths() {
+  return {own_path().parent_path() / "python", package().parent_path()};
+}
+
 void become_python(const std::string& verb, std::vector<std::string> words) {
-  words.insert(words.begin(), {python(), package().string(), verb});
+  words.insert(words.begin(), {python_interpreter(), package().string(), verb});
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);

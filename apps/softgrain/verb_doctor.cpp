@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "python_program.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/core/version.hpp"
 #include "softgrain/io/hdf5_file.hpp"
@@ -55,11 +56,24 @@ Finding instruction_set() {
 }
 
 Finding python() {
-  const std::string versions = output_of(
-      "/usr/bin/python3 -c 'import sys, numpy, matplotlib, h5py; print(f\"{sys.version.split()[0]}, "
-      "matplotlib {matplotlib.__version__}, h5py {h5py.__version__}\")'");
-  return {"python", versions.empty() ? "/usr/bin/python3: matplotlib or h5py is missing" : versions,
+  const std::string versions =
+      output_of("'" + python_interpreter() +
+                "' -c 'import sys, numpy, matplotlib, h5py; print(f\"{sys.version.split()[0]}, "
+                "matplotlib {matplotlib.__version__}, h5py {h5py.__version__}\")'");
+  return {"python", versions.empty() ? python_interpreter() + ": matplotlib or h5py is missing" : versions,
           versions.empty() ? "plots need them: apt-get install python3-matplotlib python3-h5py" : ""};
+}
+
+Finding python_module() {
+  for (const std::filesystem::path& path : python_paths()) {
+    const std::string found =
+        output_of(fmt::format("PYTHONPATH='{}' '{}' -c 'import softgrain._core as c; print(c.__file__)'",
+                              path.string(), python_interpreter()));
+    if (!found.empty()) return {"python module", found, ""};
+  }
+  return {"python module", "not there",
+          "simulations in Python need it: apt-get install python3-dev pybind11-dev, then configure and build "
+          "again"};
 }
 
 Finding disk() {
@@ -80,6 +94,7 @@ std::vector<Finding> findings() {
           {"threads", fmt::format("{}", threads()), ""},
           {"hdf5", hdf5_version(), ""},
           python(),
+          python_module(),
           disk()};
 }
 

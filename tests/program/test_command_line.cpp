@@ -9,6 +9,7 @@
 #include "support/subprocess.hpp"
 #include "support/temporary_directory.hpp"
 
+namespace fs = std::filesystem;
 using softgrain::test::ProcessResult;
 using softgrain::test::read_text;
 using softgrain::test::TemporaryDirectory;
@@ -159,6 +160,22 @@ TEST_CASE("doctor says what it finds, to people and to machines") {
   const auto json = nlohmann::json::parse(softgrain_program({"doctor", "--json"}).out);
   CHECK(json["version"]["ok"] == true);
   CHECK(json["hdf5"]["value"].get<std::string>().starts_with("1."));
+}
+
+TEST_CASE("doctor says whether simulations in Python are possible") {
+  const auto json = nlohmann::json::parse(softgrain_program({"doctor", "--json"}).out);
+  const fs::path package = fs::path(SOFTGRAIN_PROGRAM).parent_path() / "python/softgrain";
+  const bool built =
+      fs::exists(package) && std::ranges::any_of(fs::directory_iterator(package), [](const auto& file) {
+        return file.path().filename().string().starts_with("_core");
+      });
+  CHECK(json["python module"]["ok"] == built);
+  if (built) CHECK(json["python module"]["value"].get<std::string>().starts_with(package.string()));
+  const auto without = nlohmann::json::parse(
+      softgrain::test::run({SOFTGRAIN_PROGRAM, "doctor", "--json"}, {{"SOFTGRAIN_PYTHON", "/bin/false"}})
+          .out);
+  CHECK(without["python module"]["ok"] == false);
+  CHECK(without["python module"]["value"] == "not there");
 }
 
 TEST_CASE("a full stdout is an input/output failure, exit code 4") {

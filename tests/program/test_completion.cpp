@@ -22,6 +22,12 @@ std::string bash_offers(const std::string& words) {
   return result.out;
 }
 
+bool has(const std::string& shell) {
+  if (softgrain::test::run({"/bin/sh", "-c", "command -v " + shell}).exit_code == 0) return true;
+  MESSAGE(shell << " is not here, so this was not tried: tools/install_dependencies.sh --with shells");
+  return false;
+}
+
 ProcessResult completion(const std::string& shell) {
   return softgrain::test::run({SOFTGRAIN_PROGRAM, "completion", shell});
 }
@@ -55,6 +61,45 @@ TEST_CASE("bash takes its completion for complete, and bash reads the one of zsh
       softgrain::test::run({"/bin/bash", "--norc", "-c", "source \"$0\"; complete -p softgrain", bash});
   CHECK(registered.out == "complete -o default -F _softgrain softgrain\n");
   CHECK(softgrain::test::run({"/bin/bash", "-n", folder.file("zsh", completion("zsh").out)}).exit_code == 0);
+}
+
+TEST_CASE("fish completes verbs, options and keys when it is there") {
+  if (!has("fish")) return;
+  const softgrain::test::TemporaryDirectory folder;
+  const std::string file = folder.file("softgrain.fish", completion("fish").out);
+  const auto offers = [&](const std::string& line) {
+    const auto result = softgrain::test::run(
+        {"/usr/bin/fish", "--no-config", "-c", "source " + file + "; complete -C '" + line + "'"},
+        {{"HOME", folder.path().string()}}, folder.path().string());
+    CHECK_MESSAGE(result.err.empty(), result.err);
+    return result.out;
+  };
+  CHECK(offers("softgrain res").starts_with("resume\tGo on"));
+  CHECK(offers("softgrain run case.toml --st").starts_with("--stop-after\t"));
+  CHECK(offers("softgrain run case.toml --set contact.fr").starts_with("contact.friction="));
+  CHECK(offers("softgrain sweep case.toml --vary sample.see").starts_with("sample.seed="));
+}
+
+TEST_CASE("zsh completes verbs, options and keys when it is there") {
+  if (!has("zsh")) return;
+  const softgrain::test::TemporaryDirectory folder;
+  // types a line with a tab at its end into a zsh of its own, where `softgrain` prints how it was called
+  const std::string typist = folder.file("typist", R"(zmodload zsh/zpty
+zpty shell zsh -f -i
+zpty -w shell 'PS1=; stty -echo; autoload -Uz compinit; compinit -u -D; source '$1'; softgrain() { print "<$*>" }; print READ''Y'
+zpty -r -m shell said '*READY*'
+zpty -w shell "softgrain $2"$'\t'
+zpty -r -m shell said '*<*>*'
+print -r -- ${${said##*<}%%>*}
+)");
+  const std::string file = folder.file("softgrain.zsh", completion("zsh").out);
+  const auto completed = [&](const std::string& line) {
+    return softgrain::test::run({"/usr/bin/timeout", "60", "zsh", "-f", typist, file, line}).out;
+  };
+  CHECK(completed("res") == "resume\n");
+  CHECK(completed("run case.toml --st") == "run case.toml --stop-after\n");
+  CHECK(completed("run case.toml --set contact.fr") == "run case.toml --set contact.friction=\n");
+  CHECK(completed("sweep case.toml --vary sample.see") == "sweep case.toml --vary sample.seed=\n");
 }
 
 TEST_CASE("the manual page has every verb") {

@@ -49,6 +49,7 @@ def become_run(plan, index):
 
 
 def write_script(plan, name, text_of, columns):
+    execute.select_undone(plan, plan.runs, len(os.sched_getaffinity(0)))  # refuses a wrong case here, not in the queue
     plan.folder.mkdir(parents=True, exist_ok=True)
     path = plan.folder / name
     path.write_text(text_of(plan, scripts.sweep_words(plan, columns), path))
