@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that softgrain needs; the only place that names them. Does nothing when all are there.
-#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, bench, viewer, torture, cluster, shells, clang
+#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, bench, viewer, torture, cluster, shells, paraview, clang
 #   tools/install_dependencies.sh --list                 the table below
 # Why each was chosen: docs/decisions/0002-dependencies.md
 set -euo pipefail
@@ -48,6 +48,10 @@ cluster    slurm-wlm               a Slurm of one node for the test of sweeps
 cluster    munge                   its authentication
 shells     zsh                     tries its completion
 shells     fish                    tries its completion
+paraview   paraview                draws the scene of softgrain paraview, 0.7 GB
+paraview   python3-paraview        pvbatch
+paraview   xvfb                    its window
+paraview   xauth                   its window
 clang      clang                   the second compiler (preset clang)
 TABLE
 }
@@ -56,7 +60,7 @@ groups="build libraries python tests pictures"
 while (($#)); do
   case "$1" in
     --list) table && exit 0 ;;
-    --with) groups+=" ${2:?--with needs a group: checks, docs, bench, viewer, torture, cluster, shells or clang}" && shift 2 ;;
+    --with) groups+=" ${2:?--with needs a group: checks, docs, bench, viewer, torture, cluster, shells, paraview or clang}" && shift 2 ;;
     *) sed -n '2,4s/^# //p' "$0" >&2 && exit 2 ;;
   esac
 done

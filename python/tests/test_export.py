@@ -3,7 +3,10 @@
 import contextlib
 import dataclasses
 import io
+import os
 import re
+import shutil
+import subprocess
 import sys
 import tempfile
 import types
@@ -12,6 +15,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import h5py
+import matplotlib.image
 import numpy as np
 import synthetic
 
@@ -195,6 +199,28 @@ class Paraview(Temporary):
                          ["grains.pvd", "particles.pvd", "contacts.pvd", "walls.pvd"])
         self.assertTrue(all(Path(path).exists() for path in shown))
         np.testing.assert_allclose(ranges[0], pressure_range(list(self.run_of_bonds)), rtol=1e-5)
+
+    @unittest.skipUnless(shutil.which("pvbatch") and shutil.which("xvfb-run"),
+                         "ParaView is not here, so this was not tried: tools/install_dependencies.sh --with paraview")
+    def test_paraview_draws_the_scene(self):
+        folder, program = self.folder.parent, os.environ["SOFTGRAIN_PROGRAM"]
+        (folder / "case.toml").write_text("[bpm]\nprimaries = 60\n[loading]\nwall_velocity = '2 m/s'\nmax_strain = 0.05\n"
+                                          "unload_at = []\n[output]\nsnapshots = 2\nreport = false\n")
+        subprocess.run([program, "run", "case.toml", "-q", "-o", "run"], cwd=folder, check=True)
+        self.folder = folder / "run"
+        _, scene, _ = self.export("--to=paraview")
+        picture, script = folder / "scene.png", folder / "draw.py"
+        script.write_text(f"exec(open({str(scene)!r}).read())\nfrom paraview.simple import SaveScreenshot\n"
+                          f"view.ViewSize = [600, 400]\nSaveScreenshot({str(picture)!r}, view)\n")
+        drawn = subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24", "pvbatch", script],
+                               capture_output=True, text=True, timeout=300)
+        self.assertEqual(drawn.returncode, 0, drawn.stdout + drawn.stderr)
+        pixels = matplotlib.image.imread(picture)[..., :3]
+        self.assertTrue((pixels[0, 0] == 1).all())  # white
+        red, green, blue = np.moveaxis(pixels, -1, 0)
+        self.assertTrue(((red > 2 * green) & (red > 2 * blue)).any())  # tubes
+        self.assertTrue(((green > 1.2 * red) & (green > 1.1 * blue)).any())  # the middle of the pressures' range
+        self.assertTrue((pixels.max(axis=-1) < 0.2).any())  # walls
 
     def test_a_run_without_files_for_paraview_is_refused(self):
         for path in (self.folder / "vtk").iterdir():

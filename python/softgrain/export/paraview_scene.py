@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from paraview.simple import (CellDatatoPointData, ColorBy, GetActiveViewOrCreate, GetAnimationScene,
-                             GetColorTransferFunction, PVDReader, Render, ResetCamera, Show, Tube)
+                             GetColorTransferFunction, GetScalarBar, PVDReader, Render, ResetCamera, Show, Tube)
 
 FOLDER = Path(".")
 PRESSURES = (0, 1)  # [Pa]
@@ -11,13 +11,22 @@ RADIUS = 1  # [m]
 
 view = GetActiveViewOrCreate("RenderView")
 view.InteractionMode = "2D"
+view.UseColorPaletteForBackground = 0
+view.Background = [1, 1, 1]
+view.OrientationAxesVisibility = 0
 colours = GetColorTransferFunction("pressure")
 colours.ApplyPreset("Viridis (matplotlib)", True)
-colours.RescaleTransferFunction(*PRESSURES)
+colours.AutomaticRescaleRangeMode = "Never"  # one range over all frames
 
 
 def series(kind):
     return PVDReader(registrationName=kind, FileName=str(FOLDER / f"{kind}.pvd"))
+
+
+def paint(display, colour):
+    """One colour for all of it; ColorBy(display, None) fails in ParaView 5.11 where nothing is coloured yet."""
+    display.ColorArrayName = ["POINTS", ""]
+    display.DiffuseColor = display.AmbientColor = colour
 
 
 def show_grains():
@@ -37,8 +46,20 @@ def show_particles():
     display.ScaleByArray = 1
     display.UseScaleFunction = 0
     display.GaussianRadius = 1.0
+    display.ShaderPreset = "Plain circle"
     ColorBy(display, ("POINTS", "pressure"))
     display.SetScalarBarVisibility(view, True)
+
+
+def show_legend():
+    legend = GetScalarBar(colours, view)
+    legend.Title = "pressure [Pa]"
+    legend.TitleColor = legend.LabelColor = [0, 0, 0]
+    legend.TitleFontSize = legend.LabelFontSize = 14
+    legend.WindowLocation = "Lower Center"
+    legend.Orientation = "Horizontal"
+    legend.ScalarBarLength = 0.4
+    colours.RescaleTransferFunction(*PRESSURES)  # ColorBy has changed it
 
 
 def show_contacts():
@@ -50,18 +71,17 @@ def show_contacts():
     tubes.Radius = 0.05 * RADIUS
     tubes.RadiusFactor = 10
     display = Show(tubes, view)
-    ColorBy(display, None)
-    display.DiffuseColor = [0.63, 0.11, 0.2]
+    display.Position = [0, 0, 2 * RADIUS]  # before the disks
+    paint(display, [0.63, 0.11, 0.2])
 
 
 def show_walls():
     display = Show(series("walls"), view)
     display.LineWidth = 3
-    ColorBy(display, None)
-    display.DiffuseColor = [0.1, 0.1, 0.1]
+    paint(display, [0.1, 0.1, 0.1])
 
 
-for show in (show_grains, show_particles, show_contacts, show_walls):
+for show in (show_grains, show_particles, show_contacts, show_walls, show_legend):
     show()
 GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
 GetAnimationScene().GoToLast()
