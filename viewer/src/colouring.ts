@@ -59,7 +59,8 @@ export function contactsOfGrains(run: Run, frame: number): Float32Array {
   const owner = run.header.contacts_of_grains ? null : run.column("particle.grain", frame);
   a.forEach((first, c) => {
     const i = owner ? owner[first] : first;
-    const j = owner ? owner[b[c]] : b[c];
+    const wall = owner ? b[c] - owner.length : -1;
+    const j = !owner ? b[c] : wall < 0 ? owner[b[c]] : run.grains + wall;
     if (i === j) return;
     neighbours[i]?.add(j);
     neighbours[j]?.add(i);

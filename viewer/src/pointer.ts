@@ -1,8 +1,14 @@
 import { describe, pick } from "./pick";
 import { Renderer } from "./renderer";
 
-/** The pointer over the packing: a grain's numbers, magnifying (double click, back with shift) and moving. */
+/**
+ * The pointer over the packing: a grain's numbers, magnifying (double click, back with shift; two fingers) and
+ * moving.
+ */
 export class Pointer {
+  /** Middle and distance of the two fingers when they were last seen. */
+  private pinch?: { x: number; y: number; distance: number };
+
   constructor(
     private canvas: HTMLCanvasElement,
     private tip: HTMLElement,
@@ -14,7 +20,29 @@ export class Pointer {
     canvas.addEventListener("pointerdown", (event) => this.onMove(event));
     canvas.addEventListener("pointerleave", () => this.leave());
     canvas.addEventListener("dblclick", (event) => this.onDoubleClick(event));
+    canvas.addEventListener("touchmove", (event) => this.onTouch(event), { passive: false });
+    for (const kind of ["touchstart", "touchend", "touchcancel"] as const)
+      canvas.addEventListener(kind, () => (this.pinch = undefined));
     document.addEventListener("keydown", () => this.leave());
+  }
+
+  /** What lies between two fingers stays between them; one finger scrolls the page. */
+  private onTouch(event: TouchEvent): void {
+    if (event.touches.length !== 2) return;
+    event.preventDefault();
+    const { left, top } = this.canvas.getBoundingClientRect();
+    const [a, b] = event.touches;
+    const x = (a.clientX + b.clientX) / 2 - left;
+    const y = (a.clientY + b.clientY) / 2 - top;
+    const distance = Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY) || 1;
+    if (this.pinch) {
+      const scale = this.renderer.pixelsPerMetre;
+      this.renderer.pan((x - this.pinch.x) / scale, (this.pinch.y - y) / scale);
+      this.renderer.zoomAt(distance / this.pinch.distance, this.renderer.toWorld(x, y));
+    }
+    this.pinch = { x, y, distance };
+    this.tip.hidden = true;
+    this.highlight(-1);
   }
 
   private onMove(event: PointerEvent): void {

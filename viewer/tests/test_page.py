@@ -208,6 +208,23 @@ class Page(unittest.TestCase):
         self.assertGreater(self.browser.run(f"{STAGE}.width"), 340)
         self.assertGreater(self.browser.run("document.querySelector('.play').getBoundingClientRect().height"), 32)
 
+    def test_two_fingers_magnify_what_lies_between_them(self):
+        self.browser.resize(390, 844, phone=True)
+        self.open()
+        self.browser.press("End", 35)
+        x, y = self.browser.run(f"(r => [r.x + r.width / 2, r.y + r.height / 2])({STAGE})")
+        unlike = lambda p, q: (np.abs(p - q).max(axis=2) > 20).mean()  # noqa: E731
+        pictures = [self.pixels("whole", STAGE)]
+        for name, reaches in (("magnified", (20, 40, 60, 80)), ("whole again", (80, 60, 40, 10))):
+            self.browser.fingers("touchStart", (x - reaches[0], y), (x + reaches[0], y))
+            for reach in reaches:
+                self.browser.fingers("touchMove", (x - reach, y), (x + reach, y))
+            self.browser.fingers("touchEnd")
+            pictures.append(self.pixels(name, STAGE))
+        self.assertGreater(unlike(pictures[0], pictures[1]), 0.1)
+        self.assertLess(unlike(pictures[0], pictures[2]), 0.001)
+        self.assertEqual(self.browser.run("window.visualViewport.scale"), 1)  # the page itself was not magnified
+
     def test_several_runs_share_the_plots_and_take_turns_in_the_picture(self):
         self.open("both.html")
         names = "[...document.querySelectorAll('.runs button')].map(b => b.textContent)"

@@ -204,8 +204,8 @@ void BpmCompaction::complete_scene(Scene& scene) const {
   scene.outlines["grain"] = {1, std::move(grain_of_vertex)};
   const double low = particles.walls[bottom_wall].point[1], high = particles.walls[top_wall].point[1];
   const double left = particles.walls[left_wall].point[0], right = particles.walls[right_wall].point[0];
-  scene.wall_segments = {left, low, left,  high, right, low,  right, high,
-                         left, low, right, low,  left,  high, right, high};
+  scene.wall_segments = {left, low, right, low,  left,  high, right, high,  // in the order of BoxWall
+                         left, low, left,  high, right, low,  right, high};
 }
 
 }  // namespace softgrain

@@ -184,9 +184,8 @@ Scene BpmSimulation::scene() const {
     if (!(contacts.impulse[c][0] > 0)) continue;
     const int a = contacts.body_a[c], b = contacts.body_b[c];
     ++coordination[a];
-    if (b >= n) continue;
-    ++coordination[b];
-    pairs.insert(pairs.end(), {a, b});
+    if (b < n) ++coordination[b];
+    pairs.insert(pairs.end(), {a, b});  // from n on: walls
     force.push_back(contacts.impulse[c][0] / case_.time.step);
   }
   Scene scene;

@@ -280,4 +280,20 @@ TEST_CASE("a restored compaction goes on bit for bit") {
   CHECK(scene.wall_segments.size() == 16);
   CHECK(scene.particles.contains("grain"));
   CHECK(scene.outlines.contains("grain"));
+
+  // whatever pushes a wall lies at its segment
+  const auto& pairs = std::get<std::vector<std::int64_t>>(scene.contacts.at("pair").values);
+  const auto &position = numbers(scene.particles.at("position")),
+             &radius = numbers(scene.particles.at("radius"));
+  int at_walls = 0;
+  for (std::size_t k = 0; k < pairs.size(); k += 2) {
+    const auto wall = pairs[k + 1] - static_cast<std::int64_t>(radius.size());
+    if (wall < 0) continue;
+    const double* segment = &scene.wall_segments[4 * wall];
+    const int across = wall < 2 ? 1 : 0;
+    CHECK(segment[across] == segment[across + 2]);
+    CHECK(std::abs(position[2 * pairs[k] + across] - segment[across]) < 1.1 * radius[pairs[k]]);
+    ++at_walls;
+  }
+  CHECK(at_walls > 0);
 }
