@@ -47,6 +47,7 @@ void add_verbs(CLI::App& app) {
   add_solve_verb(app);
   add_schema_verb(app);
   add_doctor_verb(app);
+  add_bench_verb(app);
   add_completion_verb(app);
 }
 

@@ -48,10 +48,10 @@ void print_estimate(const Case& the_case, const Estimate& estimate) {
              "{} {}, about {} contacts\n"
              "about {} time steps\n"
              "about {:.0f} MB of memory, {:.0f} MB of disk\n"
-             "{} {} on one thread\n",
+             "about {} on one thread\n",
              count(estimate.particles), bpm ? "primary particles" : "material points",
              count(estimate.contacts), count(estimate.steps), estimate.memory / 1e6, estimate.disk / 1e6,
-             bpm ? "at most" : "about", duration_text(3600 * estimate.hours));
+             duration_text(3600 * estimate.hours));
 }
 
 void check(const CheckOptions& options) {

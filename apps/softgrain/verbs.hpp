@@ -33,6 +33,7 @@ void add_new_verb(CLI::App& app);
 void add_check_verb(CLI::App& app);
 void add_schema_verb(CLI::App& app);
 void add_doctor_verb(CLI::App& app);
+void add_bench_verb(CLI::App& app);
 void add_run_verb(CLI::App& app);  // run and resume
 void add_sweep_verb(CLI::App& app);
 void add_reproduce_verb(CLI::App& app);

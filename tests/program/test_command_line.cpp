@@ -38,7 +38,7 @@ TEST_CASE("--version prints one line on stdout") {
 TEST_CASE("--help names the verbs, and every verb has an example") {
   const auto result = softgrain_program({"--help"});
   CHECK(result.exit_code == 0);
-  for (const std::string verb : {"new", "check", "schema", "doctor"}) {
+  for (const std::string verb : {"new", "check", "schema", "doctor", "bench"}) {
     CHECK(mentions(result.out, "  " + verb + " "));
     const auto help = softgrain_program({verb, "--help"});
     CHECK(help.exit_code == 0);
@@ -160,6 +160,16 @@ TEST_CASE("doctor says what it finds, to people and to machines") {
   const auto json = nlohmann::json::parse(softgrain_program({"doctor", "--json"}).out);
   CHECK(json["version"]["ok"] == true);
   CHECK(json["hdf5"]["value"].get<std::string>().starts_with("1."));
+}
+
+TEST_CASE("bench measures three small compactions") {
+  const auto json = nlohmann::json::parse(softgrain_program({"bench", "--rounds", "1", "--json"}).out);
+  REQUIRE(json.size() == 3);
+  for (const auto& row : json) {
+    CHECK(row["cpu_seconds"] > 0);
+    CHECK(row["steps"] > 50);
+    CHECK(row["sweeps_per_step"] > 1);
+  }
 }
 
 TEST_CASE("doctor says whether simulations in Python are possible") {

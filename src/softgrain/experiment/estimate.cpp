@@ -59,9 +59,12 @@ double time_step(const Case& c) {
   return (is_updated_lagrangian(c) ? 0.2 : 0.26) * cell / std::sqrt(modulus / c.grain.density);
 }
 
-/// CPU time of a step [s], as measured on one core of a server of 2023.
+/// CPU time of a step [s], as measured on one core of a server of 2024 (docs/performance.md).
 double seconds_of_step(const Case& c, const Estimate& e) {
-  if (c.experiment.model == "bpm") return e.contacts * c.solver.max_sweeps / 15e6;
+  constexpr int usual_sweeps = 17;
+  const int sweeps =
+      std::clamp(usual_sweeps, c.solver.min_sweeps, std::max(c.solver.min_sweeps, c.solver.max_sweeps));
+  if (c.experiment.model == "bpm") return e.contacts * sweeps * 5.5e-9;
   if (is_updated_lagrangian(c)) return e.particles * 1.1e-7;
   const double batches = std::ceil(grains(c) / 8);  // a batch of 8 grains costs the same when it is not full
   return batches * 8 * e.particles / grains(c) * (is_implicit(c) ? 9e-7 : 1.2e-8);

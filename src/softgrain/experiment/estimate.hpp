@@ -13,7 +13,7 @@ struct Estimate {
   double steps = 0;   ///< of the loading path; preparing the sample comes on top
   double memory = 0;  ///< [bytes] 50 MB + 1 kB per particle + 200 B per contact
   double disk = 0;    ///< [bytes] snapshots and ParaView's files
-  double hours = 0;   ///< [h] on one thread; bpm: at most, every step with all sweeps
+  double hours = 0;   ///< [h] on one thread; bpm: with 17 sweeps a step, as usual
 };
 
 /// Estimates a valid case.
