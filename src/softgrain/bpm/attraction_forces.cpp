@@ -30,14 +30,12 @@ AttractionForces::Rows AttractionForces::rows_of(const RigidParticles<2>& partic
   const double widest = *std::max_element(radius, radius + x.size());
   const CellGrid<2> grid(x, 4 * widest + reference.skin);
   for (int i = 0; i < static_cast<int>(x.size()); ++i) {
-    const std::size_t begin = rows.neighbour.size();
     grid.for_each_neighbour(i, [&](int j) {
       if (j < i) return;
       const Vec<2> d = x[j] - x[i];
       const double reach = 2 * (radius[i] + radius[j]) + reference.skin;
       if (dot(d, d) < reach * reach) rows.neighbour.push_back(grain.begin + j);
     });
-    std::sort(rows.neighbour.begin() + begin, rows.neighbour.end());
     while (rows.neighbour.size() % lane_count != 0) rows.neighbour.push_back(grain.begin + i);
     rows.begin.push_back(static_cast<int>(rows.neighbour.size()));
   }

@@ -5,6 +5,7 @@ namespace softgrain {
 void add_contact_work(std::span<const OutlineContact> contacts, std::span<const Vec<2>> impulse,
                       const OutlineState& state, WorkBudget& work, std::span<Vec<2>> wall_impulse) {
   for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (impulse[c][0] == 0) continue;
     const Vec<2> P = impulse_vector(contacts[c], impulse[c]);
     const Vec<2> u = (1 / state.dt) * relative_displacement(contacts[c], state);
     work.contacts -= dot(P, u);

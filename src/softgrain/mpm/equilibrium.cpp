@@ -39,18 +39,26 @@ struct CellState {
   std::array<WideMat, 4> F;
 };
 
-unsigned inverted_lanes(const Wide& J) {
-  unsigned lanes = 0;
-  for (int lane = 0; lane < Wide::size; ++lane)
-    if (!(J[lane] > 0)) lanes |= 1u << lane;
-  return lanes;
-}
+/// The lanes in which some J was not positive.
+class InvertedLanes {
+ public:
+  void note(const Wide& J) { some_ = select(J > 0.0, some_, J); }
+  unsigned lanes() const {
+    unsigned found = 0;
+    for (int lane = 0; lane < Wide::size; ++lane)
+      if (!(some_[lane] > 0)) found |= 1u << lane;
+    return found;
+  }
+
+ private:
+  Wide some_ = 1.0;  // a J that is not positive, else 1
+};
 
 template <class Law>
-unsigned cell_force(const Law& law, const CellState& state, Wide radius, WideVectors& force) {
-  unsigned inverted = 0;
+void cell_force(const Law& law, const CellState& state, Wide radius, WideVectors& force,
+                InvertedLanes& inverted) {
   for (int p = 0; p < 4; ++p) {
-    if (Law::needs_positive_J) inverted |= inverted_lanes(determinant(state.F[p]));
+    if (Law::needs_positive_J) inverted.note(determinant(state.F[p]));
     const WideMat P = law.stress(state.F[p]);
     const Wide weight = state.points[p].volume * radius;  // V R^2 / R
     for (int a = 0; a < 4; ++a) {
@@ -58,16 +66,17 @@ unsigned cell_force(const Law& law, const CellState& state, Wide radius, WideVec
       for (int i = 0; i < 2; ++i) force[state.cell[a]][i] += weight * (P(i, 0) * g[0] + P(i, 1) * g[1]);
     }
   }
-  return inverted;
 }
 
 /// With P = dpsi_dev/dF + U'(mean J) cof F.
 template <class Law>
-unsigned cell_force_mean_dilatation(const Law& law, const CellState& state, Wide radius, WideVectors& force) {
+void cell_force_mean_dilatation(const Law& law, const CellState& state, Wide radius, WideVectors& force,
+                                InvertedLanes& inverted) {
   double volume = 0;
   const Wide J = state.mean_dilatation(volume);
   const Wide pressure = law.volume().derivative(J);
-  unsigned inverted = cell_force(law.deviatoric(), state, radius, force) | inverted_lanes(J);
+  cell_force(law.deviatoric(), state, radius, force, inverted);
+  inverted.note(J);
   for (int p = 0; p < 4; ++p) {
     const WideMat cof = cofactor(state.F[p]);
     const Wide weight = state.points[p].volume * radius * pressure;
@@ -76,7 +85,6 @@ unsigned cell_force_mean_dilatation(const Law& law, const CellState& state, Wide
       for (int i = 0; i < 2; ++i) force[state.cell[a]][i] += weight * (cof(i, 0) * g[0] + cof(i, 1) * g[1]);
     }
   }
-  return inverted;
 }
 
 /// The ten blocks K_ab, b <= a, of a cell.
@@ -142,18 +150,18 @@ unsigned internal_force(const SoftGrains& grains, const GrainBatch& batch, WideV
   force.assign(batch.position.size(), {});
   return std::visit(
       [&]<class Law>(const Law& law) {
-        unsigned inverted = 0;
+        InvertedLanes inverted;
         for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell) {
           const CellState state(batch, cell);
           if constexpr (SplitLaw<Law, 2>) {
             if (grains.mean_dilatation) {
-              inverted |= cell_force_mean_dilatation(law, state, batch.radius, force);
+              cell_force_mean_dilatation(law, state, batch.radius, force, inverted);
               continue;
             }
           }
-          inverted |= cell_force(law, state, batch.radius, force);
+          cell_force(law, state, batch.radius, force, inverted);
         }
-        return inverted;
+        return inverted.lanes();
       },
       grains.law);
 }

@@ -75,7 +75,8 @@ SoftStepReport ExplicitDynamics::step(double dt) {
 
   SoftStepReport report{.iterations = 1, .sweeps = solved.sweeps, .converged = solved.converged};
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    report.contacts += impulse[c][0] > 0;
+    if (impulse[c][0] == 0) continue;  // open
+    ++report.contacts;
     report.penetration_max =
         std::max(report.penetration_max, -gap_now(contacts[c], outline_) / smallest_radius_);
   }

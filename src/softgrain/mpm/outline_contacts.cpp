@@ -80,26 +80,28 @@ class SpanCurve {
   Vec<2> start_, end_, b_, c_, d_;
 };
 
-/// True if a slave at x is surely more than `margin` outside the outline about its nearest vertex: the place
-/// that it faces is at most about half a segment from that vertex.
-bool surely_outside(const SoftGrains& grains, std::span<const Vec<2>> position, const Vec<2>& x, int nearest,
-                    double margin) {
-  const Vec<2>& vertex = position[nearest];
-  const Vec<2>&before = position[previous_vertex(grains, nearest)],
-        &after = position[next_vertex(grains, nearest)];
-  const double height = dot(x - vertex, perpendicular(before - after));  // times |after - before|
-  const double reach = margin + 0.6 * std::max(norm(after - vertex), norm(before - vertex));
-  return height > reach * norm(after - before);
+/// The span of the master's outline that a slave at x faces, next to the vertex nearest to it.
+std::array<int, 4> facing_span(const SoftGrains& grains, std::span<const Vec<2>> position, const Vec<2>& x,
+                               int nearest) {
+  const std::array<int, 4> span = span_from(grains, nearest);
+  const Vec<2> tangent = position[span[2]] - position[span[0]];
+  return dot(x - position[nearest], tangent) < 0 ? span_from(grains, previous_vertex(grains, nearest)) : span;
 }
 
-/// The place of the master's outline, near its vertex `nearest`, that a slave faces.
-OutlineContact facing_curve(const SoftGrains& grains, const OutlineState& state, int slave, int nearest) {
+/// True if a point is surely more than `margin` outside a span, whose curve bulges by less than a quarter of
+/// its chord.
+bool surely_outside(std::span<const Vec<2>> position, const std::array<int, 4>& span, const Vec<2>& x,
+                    double margin) {
+  const Vec<2> chord = position[span[2]] - position[span[1]];
+  const double length = norm(chord);
+  return -dot(x - position[span[1]], perpendicular(chord)) > (margin + length / 4) * length;
+}
+
+/// The place of a span that a slave faces.
+OutlineContact curve_contact(const OutlineState& state, int slave, const std::array<int, 4>& span) {
   const Vec<2>& x = state.position[slave];
-  OutlineContact contact{.vertex = slave, .master = span_from(grains, nearest)};
-  const Vec<2> tangent = state.position[contact.master[2]] - state.position[contact.master[0]];
-  if (dot(x - state.position[nearest], tangent) < 0)
-    contact.master = span_from(grains, previous_vertex(grains, nearest));
-  const SpanCurve curve(state.position, contact.master);
+  OutlineContact contact{.vertex = slave, .master = span};
+  const SpanCurve curve(state.position, span);
   contact.share = curve.closest_to(x);
   const Vec<2> t = curve.tangent(contact.share);
   contact.normal = (-1 / norm(t)) * perpendicular(t);  // outward of a counter-clockwise outline
@@ -206,8 +208,9 @@ std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, 
       candidate->nearest = nearest_vertex(grains, state.position, v, candidate->nearest);
       const Vec<2> d = state.position[v] - state.position[candidate->nearest];
       if (dot(d, d) > 9 * segment_ * segment_) continue;
-      if (surely_outside(grains, state.position, state.position[v], candidate->nearest, margin)) continue;
-      const OutlineContact contact = facing_curve(grains, state, v, candidate->nearest);
+      const auto span = facing_span(grains, state.position, state.position[v], candidate->nearest);
+      if (surely_outside(state.position, span, state.position[v], margin)) continue;
+      const OutlineContact contact = curve_contact(state, v, span);
       if (contact.gap < margin) contacts.push_back(contact);
     }
   }

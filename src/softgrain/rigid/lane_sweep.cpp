@@ -51,8 +51,9 @@ struct BodyLanes {
 };
 
 /// Per contact: reads 72 B of contact and 32 B of velocities, writes 16 B and 32 B.
-void sweep_frictionless(const SweepData& data, const ContactBatch& batch, LaneViolation& violation) {
+LaneViolation sweep_frictionless(const SweepData& data, const ContactBatch& batch) {
   const auto& [particles, contacts, offset, impulse, friction, relaxation] = data;
+  LaneViolation violation;
   for (int c = batch.begin; c < batch.fours_end; c += lane_count) {
     BodyLanes bodies(particles.velocity.data(), contacts, c);
     const LaneColumns n = load_columns(&contacts.normal[c]);
@@ -72,6 +73,7 @@ void sweep_frictionless(const SweepData& data, const ContactBatch& batch, LaneVi
     const Lanes v = dp * (inverse_a + inverse_b);
     violation.add(v * v, p_n);
   }
+  return violation;
 }
 
 Lanes gather_spin(const Spin<2>* spin, const int* index) {
@@ -82,8 +84,9 @@ void scatter_spin(Lanes lanes, Spin<2>* spin, const int* index) {
 }
 
 /// Per contact: reads 80 B of contact and 48 B of velocities and spins, writes 16 B and 48 B.
-void sweep_frictional(const SweepData& data, const ContactBatch& batch, LaneViolation& violation) {
+LaneViolation sweep_frictional(const SweepData& data, const ContactBatch& batch) {
   const auto& [particles, contacts, offset, impulse, friction, relaxation] = data;
+  LaneViolation violation;
   const double kappa = particles.inertia_ratio;
   Spin<2>* spin = particles.spin.data();
   for (int c = batch.begin; c < batch.fours_end; c += lane_count) {
@@ -113,13 +116,13 @@ void sweep_frictional(const SweepData& data, const ContactBatch& batch, LaneViol
     const Lanes v_n = W_nn * dp_n, v_t = (1 + kappa) * W_nn * dp_t;
     violation.add(v_n * v_n + v_t * v_t, p_n);
   }
+  return violation;
 }
 
 }  // namespace
 
 void sweep_fours(const SweepData& data, const ContactBatch& batch, bool frictional, Violation& violation) {
-  LaneViolation lanes;
-  (frictional ? sweep_frictional : sweep_frictionless)(data, batch, lanes);
+  const LaneViolation lanes = (frictional ? sweep_frictional : sweep_frictionless)(data, batch);
   lanes.add_to(violation, data.relaxation);
 }
 
