@@ -180,8 +180,8 @@ TEST_CASE("grains that move as a whole need new lists only when they approach an
   CHECK(needs_rebuild(reference, facing));
   facing.position[2][0] += 0.2;
   CHECK_FALSE(needs_rebuild(reference, facing));
-  CHECK_FALSE(shifted({4, 5}, {-1.9, 0}));       // nobody is near
-  CHECK(shifted({4, 5}, {-2.1, 0}));             // but somebody might be now
+  CHECK_FALSE(shifted({4, 5}, {-1.9, 0}));  // nobody is near
+  CHECK(shifted({4, 5}, {-2.1, 0}));        // but somebody might be now
   CHECK(shifted({0, 1, 2, 3, 4, 5}, {0, 2.1}));
 }
 
