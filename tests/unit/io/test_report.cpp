@@ -182,16 +182,6 @@ TEST_CASE("base64 is that of RFC 4648 and gzip that of zlib") {
   CHECK(gzip(text).size() < 1000);
 }
 
-TEST_CASE("contacts of particles with walls are shown, the walls counted on from the particles") {
-  Scene scene = two_grains();
-  scene.contacts["pair"] = {2, std::vector<std::int64_t>{0, 4, 3, 8, 2, 9}};  // 8 is the floor, 9 nothing
-  scene.contacts["force"] = {1, std::vector<double>{5, 6, 7}};
-  const ReportFrame frame = frame_of(scene);
-  CHECK(frame.columns.at("contact.a") == std::vector<float>{0, 3});
-  CHECK(frame.columns.at("contact.b") == std::vector<float>{4, 8});
-  CHECK(frame.columns.at("contact.force") == std::vector<float>{5, 6});
-}
-
 TEST_CASE("forces on outlines are those between the nearest grains and walls, the mean of both sides") {
   const auto chains = chains_between_outlines(two_grains());
   REQUIRE(chains.size() == 2);
