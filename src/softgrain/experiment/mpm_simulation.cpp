@@ -134,9 +134,11 @@ std::vector<Quantity> MpmSimulation<Dynamics>::observe() {
   double x_least = std::numeric_limits<double>::infinity(), x_largest = -x_least, least_J = x_least;
   for (const Vec<2>& x : outline) x_least = std::min(x_least, x[0]), x_largest = std::max(x_largest, x[0]);
   double start_area = 0;
-  for (int g = 0; g < grains.size(); ++g) {
-    start_area += grains.mass(g) / grains.density;
-    for (const PointState& point : point_states(grains, g)) least_J = std::min(least_J, determinant(point.F));
+  for (int g = 0; g < grains.size(); ++g) start_area += grains.mass(g) / grains.density;
+  for (const GrainBatch& batch : grains.batches) {
+    const Wide J = softgrain::least_J(batch);
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+      least_J = std::min(least_J, J[lane]);
   }
   const double width = box() ? box_width() : x_largest - x_least;
   const double height = plate_distance();

@@ -1,5 +1,6 @@
 #include "softgrain/mpm/equilibrium.hpp"
 
+#include <limits>
 #include <variant>
 
 #include "softgrain/material/elastic_law.hpp"
@@ -206,6 +207,15 @@ Wide elastic_energy(const SoftGrains& grains, const GrainBatch& batch) {
         return sum * (batch.radius * batch.radius);
       },
       grains.law);
+}
+
+Wide least_J(const GrainBatch& batch) {
+  Wide least = std::numeric_limits<double>::infinity();
+  for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell) {
+    const CellState state(batch, cell);
+    for (const WideMat& F : state.F) least = min(determinant(F), least);
+  }
+  return least;
 }
 
 std::vector<PointState> point_states(const SoftGrains& grains, int grain) {

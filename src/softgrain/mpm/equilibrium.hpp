@@ -18,6 +18,9 @@ void add_stiffness(const SoftGrains& grains, const GrainBatch& batch, BatchedCho
 /// Elastic energy sum_p V_p psi(F_p) [J/m] of each grain of the batch.
 Wide elastic_energy(const SoftGrains& grains, const GrainBatch& batch);
 
+/// Smallest J = det F of the points of each grain.
+Wide least_J(const GrainBatch& batch);
+
 /// What one material point feels.
 struct PointState {
   Mat<2> F;         ///< deformation gradient

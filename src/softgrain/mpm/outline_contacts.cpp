@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <tuple>
 
 #include "softgrain/geometry/cell_grid.hpp"
 
@@ -137,11 +136,6 @@ int nearest_vertex(const SoftGrains& grains, std::span<const Vec<2>> position, i
   }
 }
 
-/// Identity of a contact over the steps: the vertex, then the wall or the master grain.
-std::tuple<int, int, int> identity(const SoftGrains& grains, const OutlineContact& contact) {
-  return {contact.vertex, contact.wall, contact.wall >= 0 ? 0 : grains.grain_of_vertex(contact.master[0])};
-}
-
 }  // namespace
 
 std::array<double, 4> curve_weights(double xi) {
@@ -238,15 +232,16 @@ double gap_now(const OutlineContact& contact, const OutlineState& state) {
 std::vector<Vec<2>> carried_impulses(const SoftGrains& grains, std::span<const OutlineContact> old,
                                      std::span<const Vec<2>> old_impulse,
                                      std::span<const OutlineContact> contacts) {
-  std::vector<std::pair<std::tuple<int, int, int>, int>> known;
-  for (int c = 0; c < static_cast<int>(old.size()); ++c)
-    if (old_impulse[c][0] > 0) known.emplace_back(identity(grains, old[c]), c);
-  std::sort(known.begin(), known.end());
   std::vector<Vec<2>> impulse(contacts.size());
+  const auto same = [&](const OutlineContact& a, const OutlineContact& b) {
+    return a.wall == b.wall &&
+           (a.wall >= 0 || grains.grain_of_vertex(a.master[0]) == grains.grain_of_vertex(b.master[0]));
+  };
+  std::size_t first = 0;  // old contact of the same vertex: both lists are sorted by it
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const auto id = identity(grains, contacts[c]);
-    const auto found = std::lower_bound(known.begin(), known.end(), std::pair{id, 0});
-    if (found != known.end() && found->first == id) impulse[c] = old_impulse[found->second];
+    while (first < old.size() && old[first].vertex < contacts[c].vertex) ++first;
+    for (std::size_t k = first; k < old.size() && old[k].vertex == contacts[c].vertex; ++k)
+      if (old_impulse[k][0] > 0 && same(old[k], contacts[c])) impulse[c] = old_impulse[k];
   }
   return impulse;
 }

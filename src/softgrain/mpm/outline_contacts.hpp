@@ -70,6 +70,7 @@ inline Vec<2> impulse_vector(const OutlineContact& contact, const Vec<2>& impuls
 Vec<2> relative_displacement(const OutlineContact& contact, const OutlineState& state);
 
 /// Impulses of `old` contacts [N s/m], given to the new contacts of the same vertex and master grain or wall.
+/// Both lists are sorted by vertex.
 std::vector<Vec<2>> carried_impulses(const SoftGrains& grains, std::span<const OutlineContact> old,
                                      std::span<const Vec<2>> old_impulse,
                                      std::span<const OutlineContact> contacts);

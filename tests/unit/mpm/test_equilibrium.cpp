@@ -148,6 +148,20 @@ TEST_CASE("internal forces sum to zero, and so do their moments about any point"
   }
 }
 
+TEST_CASE("the smallest J of a grain is that of its most squeezed point") {
+  SoftGrains grains = ten_grains(settings[0]);
+  test::shake(grains, 0.1);
+  for (int g = 0; g < grains.size(); ++g) {
+    double least = 1e9;
+    for (const PointState& point : point_states(grains, g)) {
+      const auto& F = point.F;
+      least = std::min(least, F(0, 0) * F(1, 1) - F(0, 1) * F(1, 0));
+    }
+    const auto [batch, lane] = grains.batch_of(g);
+    CHECK(least_J(*batch)[lane] == doctest::Approx(least).epsilon(1e-14));
+  }
+}
+
 TEST_CASE("patch test: one F everywhere gives one stress everywhere, and forces on the outline only") {
   const Mat<2> F{{1.1, 0.2, -0.1, 0.9}};
   for (const Setting& setting : settings) {
