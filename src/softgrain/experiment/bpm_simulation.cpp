@@ -252,7 +252,7 @@ void BpmSimulation::restore(const Checkpoint& state) {
   attraction_.update(particles, dynamics_.reference);
   from_array<2>(state, "contact_impulse", dynamics_.contacts.impulse);
   std::vector<Vec<1>> sums(12);
-  from_array<1>(state, "sums", sums);
+  from_array<1>(state, "sums", sums, 10);  // 0.1.0 before its release did not split the dissipation
   for (std::size_t w = 0; w < 4; ++w) sums_.impulse[w] = sums[w][0];
   sums_.duration = sums[4][0];
   sums_.wall_work = sums[5][0];

@@ -258,7 +258,7 @@ void MpmSimulation<Dynamics>::restore(const Checkpoint& state) {
   from_array<2>(state, "wall_point", wall_point);
   for (std::size_t w = 0; w < wall_point.size(); ++w) dynamics_.walls[w].point = wall_point[w];
   std::vector<Vec<1>> sums(16);
-  from_array<1>(state, "sums", sums);
+  from_array<1>(state, "sums", sums, 15);  // 0.1.0 before its release knew no work of friction
   for (std::size_t w = 0; w < 4; ++w) sums_.impulse[w] = sums[w][0];
   sums_.duration = sums[4][0];
   sums_.iterations = sums[5][0];
