@@ -212,8 +212,13 @@ class Paraview(Temporary):
         picture, script = folder / "scene.png", folder / "draw.py"
         script.write_text(f"exec(open({str(scene)!r}).read())\nfrom paraview.simple import SaveScreenshot\n"
                           f"view.ViewSize = [600, 400]\nSaveScreenshot({str(picture)!r}, view)\n")
-        drawn = subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24", "pvbatch", script],
-                               capture_output=True, text=True, timeout=300)
+        for _ in range(5):  # on a busy machine xvfb-run may start a program before its server answers
+            drawn = subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24", "pvbatch", script],
+                                   capture_output=True, text=True, timeout=300)
+            if "bad X server connection" not in drawn.stdout + drawn.stderr:
+                break
+        else:
+            self.skipTest("no X server answers, so ParaView was not tried")
         self.assertEqual(drawn.returncode, 0, drawn.stdout + drawn.stderr)
         pixels = matplotlib.image.imread(picture)[..., :3]
         self.assertTrue((pixels[0, 0] == 1).all())  # white
