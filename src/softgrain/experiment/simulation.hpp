@@ -34,7 +34,7 @@ struct Checkpoint {
 /// contacts as segments with their force.
 struct Scene {
   std::map<std::string, Array> particles;  ///< position (n, 2), radius, then any field by primary particle
-  std::map<std::string, Array> contacts;   ///< pair (m, 2) of particle indices, force (m, 1) [N/m]
+  std::map<std::string, Array> contacts;   ///< pair (m, 2) of particles, walls from n on, force (m, 1) [N/m]
   std::map<std::string, Array>
       outlines;  ///< position (v, 2) of the outlines' vertices, grain (v): a new grain, a new polygon
   std::vector<double> wall_segments;  ///< x0 y0 x1 y1 for each wall [m]
