@@ -66,9 +66,9 @@ void BpmCompaction::judge(const StepReport& report) {
   const double stress = (wall_impulse_[bottom_wall] + wall_impulse_[top_wall]) / (2 * dt * width());
   drive_.watch(stress, plate_distance(), step_);
   const double most = case_.loading.max_overlap;
-  if (report.overlap_mean > close_packing_overlap && solid_fraction() > close_packing_fraction)
-    drive_.state.ended = true;
-  else if (most > 0 && report.overlap_mean >= most)
+  const bool close_packed =
+      report.overlap_mean > close_packing_overlap && solid_fraction() > close_packing_fraction;
+  if (close_packed || (most > 0 && report.overlap_mean >= most))
     drive_.state.ended = true;
   else if (report.overlap_mean > largest_overlap)
     throw NumericalError(fmt::format(
