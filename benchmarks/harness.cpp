@@ -9,6 +9,7 @@
 #include <limits>
 #include <string_view>
 
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/core/version.hpp"
 
 namespace softgrain::bench {
@@ -68,6 +69,7 @@ std::vector<double> fastest(std::initializer_list<std::function<void()>> work) {
 
 Results::Results(std::string benchmark, int argc, char** argv) : benchmark_(std::move(benchmark)) {
   if (argc == 3 && std::string_view(argv[1]) == "--csv") file_ = argv[2];
+  set_threads(1);  // cpu_seconds() sees the calling thread only
 }
 
 void Results::heading(const std::string& text) const { fmt::print("\n{}: {}\n", benchmark_, text); }

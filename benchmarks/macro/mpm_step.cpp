@@ -37,7 +37,7 @@ struct Packing {
       area += std::numbers::pi * grain.radius * grain.radius;
     }
     grains = SoftGrains(std::move(placed), grains.law, grains.density, false);
-    side = sample.side;
+    side = sample.width;  // square
     walls = {{{0, 0}, {0, 1}, {}},
              {{0, side}, {0, -1}, {0, -speed}},
              {{0, 0}, {1, 0}, {}},
