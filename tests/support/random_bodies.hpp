@@ -45,13 +45,13 @@ inline double mixed_friction(int a, int b) { return (a + b) % 3 == 0 ? 0 : 0.4; 
 template <int Dim>
 struct ContactScene {
   RigidParticles<Dim> bodies;
+  NeighbourReference<Dim> reference{.skin = 0.2, .position = {}, .wall_point = {}};
   RigidContacts<Dim> contacts;
   std::vector<double> offset;
 
   explicit ContactScene(int per_side, const FrictionRule& friction = mixed_friction, double dt = 0.1,
                         const ContactLaw& law = {})
       : bodies(random_bodies<Dim>(per_side, 11)) {
-    NeighbourReference<Dim> reference{.skin = 0.2, .position = {}, .wall_point = {}};
     set_reference(reference, bodies);
     contacts = candidate_contacts(bodies, reference, friction, {});
     detect_contacts(bodies, contacts);

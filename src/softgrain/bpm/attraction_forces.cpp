@@ -13,11 +13,12 @@ AttractionForces::AttractionForces(std::vector<Attraction> laws) : laws_(std::mo
 }
 
 void AttractionForces::update(const RigidParticles<2>& particles, const NeighbourReference<2>& reference) {
-  if (generation_ == reference.generation) return;
-  generation_ = reference.generation;
   rows_.resize(reference.grains.size());
-  parallel_for(static_cast<int>(rows_.size()),
-               [&](int g) { rows_[g] = rows_of(particles, reference, reference.grains[g]); });
+  parallel_for(static_cast<int>(rows_.size()), [&](int g) {
+    if (rows_[g].made == reference.made[g]) return;
+    rows_[g] = rows_of(particles, reference, reference.grains[g]);
+    rows_[g].made = reference.made[g];
+  });
 }
 
 AttractionForces::Rows AttractionForces::rows_of(const RigidParticles<2>& particles,

@@ -18,8 +18,7 @@ class AttractionForces {
   /// The law of each grain, by its number in RigidParticles::grain; a single one holds for all.
   explicit AttractionForces(std::vector<Attraction> laws);
 
-  /// Makes the list again if the reference has moved on: all pairs of one grain closer than 2 a0 + skin
-  /// there.
+  /// Makes the lists of grains again whose reference has moved on: all pairs closer than 2 a0 + skin there.
   void update(const RigidParticles<2>& particles, const NeighbourReference<2>& reference);
 
   /// F_i += sum_j F(r_ij) (x_j - x_i)/r_ij  [N/m]
@@ -42,6 +41,7 @@ class AttractionForces {
  private:
   /// The neighbours of each primary of a grain, as far as they come after it.
   struct Rows {
+    int made = -1;  // as NeighbourReference::made
     int first = 0;  // primary of the first row
     std::vector<int> begin{0};
     std::vector<int> neighbour;  // rows are padded to four lanes with the primary itself
@@ -53,7 +53,6 @@ class AttractionForces {
   void add_forces(const RigidParticles<2>& particles, const Rows& rows, std::span<Vec<2>> force) const;
 
   std::vector<Attraction> laws_;
-  int generation_ = -1;
   std::vector<Rows> rows_;
 };
 

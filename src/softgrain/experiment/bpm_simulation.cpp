@@ -221,6 +221,7 @@ Checkpoint BpmSimulation::checkpoint() const {
   state.arrays["spin"] = to_array<1>(particles.spin);
   state.arrays["contact_impulse"] = to_array<2>(dynamics_.contacts.impulse);
   state.arrays["list_position"] = to_array<2>(dynamics_.reference.position);
+  state.arrays["list_between"] = to_array<2>(dynamics_.reference.between);
   state.arrays["list_wall_point"] = to_array<2>(dynamics_.reference.wall_point);
   std::vector<Vec<2>> wall_point;
   for (const Wall<2>& wall : particles.walls) wall_point.push_back(wall.point);
@@ -241,12 +242,15 @@ void BpmSimulation::restore(const Checkpoint& state) {
   from_array<1>(state, "spin", particles.spin);
   std::vector<Vec<2>> list_position(particles.position.size()), list_wall_point(particles.walls.size());
   from_array<2>(state, "list_position", list_position);
+  std::vector<Vec<2>> list_between = list_position;  // 0.1.0 before its release had one reference
+  if (state.arrays.contains("list_between")) from_array<2>(state, "list_between", list_between);
   from_array<2>(state, "list_wall_point", list_wall_point);
   std::vector<Vec<2>> wall_point(particles.walls.size());
   from_array<2>(state, "wall_point", wall_point);
   for (std::size_t w = 0; w < wall_point.size(); ++w) particles.walls[w].point = wall_point[w];
   // the lists are a function of the reference, so they come back in the same order
-  set_reference(dynamics_.reference, particles, std::move(list_position), std::move(list_wall_point));
+  restore_reference(dynamics_.reference, particles, std::move(list_position), std::move(list_between),
+                    std::move(list_wall_point));
   dynamics_.rebuild_contacts();
   detect_contacts(particles, dynamics_.contacts);
   attraction_.update(particles, dynamics_.reference);

@@ -15,19 +15,19 @@ struct BodyPair {
   auto operator<=>(const BodyPair&) const = default;
 };
 
-/// Particles begin .. end - 1 with gap < skin at the reference, but not if `skipped(i, j)`.
+/// Particles begin .. end - 1 with gap < skin at the reference positions, but not if `skipped(i, j)`.
 template <int Dim, class Skipped>
 std::vector<BodyPair> close_pairs(const RigidParticles<Dim>& particles,
-                                  const NeighbourReference<Dim>& reference, const GrainRange& range,
-                                  const Skipped& skipped) {
-  const auto x = std::span(reference.position).subspan(range.begin, range.end - range.begin);
+                                  const std::vector<Vec<Dim>>& reference, double skin,
+                                  const GrainRange& range, const Skipped& skipped) {
+  const auto x = std::span(reference).subspan(range.begin, range.end - range.begin);
   const double* radius = particles.radius.data() + range.begin;
   std::vector<BodyPair> pairs;
-  if (x.size() == 0) return pairs;
-  const CellGrid<Dim> grid(x, 2 * *std::max_element(radius, radius + x.size()) + reference.skin);
+  if (x.size() < 2) return pairs;
+  const CellGrid<Dim> grid(x, 2 * *std::max_element(radius, radius + x.size()) + skin);
   grid.for_each_close_pair([&](int i, int j) {
     const Vec<Dim> d = x[j] - x[i];
-    const double touch = radius[i] + radius[j] + reference.skin;
+    const double touch = radius[i] + radius[j] + skin;
     if (dot(d, d) < touch * touch && !skipped(range.begin + i, range.begin + j))
       pairs.push_back({range.begin + i, range.begin + j});
   });
@@ -41,11 +41,11 @@ std::vector<BodyPair> pairs_between(const RigidParticles<Dim>& particles,
   const auto& grain = particles.grain;
   std::vector<BodyPair> pairs;
   if (reference.grains.size() > 1)
-    pairs = close_pairs(particles, reference, {0, particles.size()},
+    pairs = close_pairs(particles, reference.between, reference.skin, {0, particles.size()},
                         [&](int i, int j) { return grain[i] == grain[j]; });
   for (std::size_t w = 0; w < particles.walls.size(); ++w) {
     for (int i = 0; i < particles.size(); ++i) {
-      const double height = dot(reference.position[i] - reference.wall_point[w], particles.walls[w].normal);
+      const double height = dot(reference.between[i] - reference.wall_point[w], particles.walls[w].normal);
       if (height < particles.radius[i] + reference.skin)
         pairs.push_back({i, particles.wall_body(static_cast<int>(w))});
     }
@@ -122,23 +122,50 @@ void append(const Sequence& sequence, const RigidParticles<Dim>& particles, cons
   batch.end = contacts.size();
 }
 
-/// Warm start: the impulse of each old contact that carries one goes to the new contact of the same bodies.
+/// The contacts of a list that was not made again, with their impulses.
 template <int Dim>
-void carry_impulses(const RigidContacts<Dim>& old, int bodies, RigidContacts<Dim>& contacts) {
-  std::vector<int> begin(bodies + 1, 0), carrying;  // old contacts by their body a
-  for (int c = 0; c < old.size(); ++c)
-    if (old.impulse[c][0] > 0) ++begin[old.body_a[c] + 1];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  carrying.resize(begin.back());
-  std::vector<int> next = begin;
-  for (int c = 0; c < old.size(); ++c)
-    if (old.impulse[c][0] > 0) carrying[next[old.body_a[c]]++] = c;
-  parallel_ranges(contacts.size(), [&](int first, int last) {
-    for (int c = first; c < last; ++c)
-      for (int k = begin[contacts.body_a[c]]; k < begin[contacts.body_a[c] + 1]; ++k)
-        if (old.body_b[carrying[k]] == contacts.body_b[c]) contacts.impulse[c] = old.impulse[carrying[k]];
-  });
+ContactBlock take_over(const RigidContacts<Dim>& old, ContactBlock block, RigidContacts<Dim>& contacts) {
+  const int shift = contacts.size() - block.begin();
+  const auto append_rows = [&](auto array) {
+    const auto& from = old.*array;
+    (contacts.*array)
+        .insert((contacts.*array).end(), from.begin() + block.begin(), from.begin() + block.end());
+  };
+  using Contacts = RigidContacts<Dim>;
+  append_rows(&Contacts::body_a), append_rows(&Contacts::body_b);
+  append_rows(&Contacts::inverse_mass_a), append_rows(&Contacts::inverse_mass_b);
+  append_rows(&Contacts::inverse_delassus), append_rows(&Contacts::friction);
+  append_rows(&Contacts::impulse);
+  for (ContactBatch* batch : {&block.frictionless, &block.frictional})
+    batch->begin += shift, batch->fours_end += shift, batch->end += shift;
+  return block;
 }
+
+/// Old contacts that carry an impulse, by their body a.
+template <int Dim>
+class CarriedImpulses {
+ public:
+  CarriedImpulses(const RigidContacts<Dim>& old, int bodies) : old_(old), begin_(bodies + 1, 0) {
+    for (int c = 0; c < old.size(); ++c)
+      if (old.impulse[c][0] > 0) ++begin_[old.body_a[c] + 1];
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    contact_.resize(begin_.back());
+    std::vector<int> next = begin_;
+    for (int c = 0; c < old.size(); ++c)
+      if (old.impulse[c][0] > 0) contact_[next[old.body_a[c]]++] = c;
+  }
+
+  /// Of the old contact of the same bodies, or 0.
+  Vec<Dim> between(int a, int b) const {
+    for (int k = begin_[a]; k < begin_[a + 1]; ++k)
+      if (old_.body_b[contact_[k]] == b) return old_.impulse[contact_[k]];
+    return {};
+  }
+
+ private:
+  const RigidContacts<Dim>& old_;
+  std::vector<int> begin_, contact_;
+};
 
 }  // namespace
 
@@ -146,29 +173,42 @@ template <int Dim>
 RigidContacts<Dim> candidate_contacts(const RigidParticles<Dim>& particles,
                                       const NeighbourReference<Dim>& reference, const FrictionRule& friction,
                                       const RigidContacts<Dim>& old) {
-  const int n = particles.size(), grains = static_cast<int>(reference.grains.size());
-  std::vector<ListedBlock> block(grains + 1);
+  const int n = particles.size(), grains = reference.between_list();
+  std::vector<const ContactBlock*> kept(grains + 1, nullptr);
+  for (const ContactBlock& block : old.blocks)
+    if (block.made == reference.made[block.list]) kept[block.list] = &block;
+  std::vector<ListedBlock> made(grains + 1);
   parallel_for(grains + 1, [&](int k) {
-    if (k == 0) {  // the longest first
-      block[grains] = listed(pairs_between(particles, reference), friction, {0, n}, n);
+    const int list = k == 0 ? grains : k - 1;  // the longest first
+    if (kept[list] != nullptr) return;
+    if (list == grains) {
+      made[list] = listed(pairs_between(particles, reference), friction, {0, n}, n);
       return;
     }
-    const GrainRange& grain = reference.grains[k - 1];
-    const auto inside = close_pairs(particles, reference, grain, [](int, int) { return false; });
-    block[k - 1] = listed(inside, friction, grain, n);
+    const GrainRange& grain = reference.grains[list];
+    const auto inside =
+        close_pairs(particles, reference.position, reference.skin, grain, [](int, int) { return false; });
+    made[list] = listed(inside, friction, grain, n);
   });
 
   RigidContacts<Dim> contacts;
-  for (int k = 0; k <= grains; ++k) {
-    ContactBlock placed;
-    append(block[k].frictionless, particles, friction, contacts, placed.frictionless);
-    append(block[k].frictional, particles, friction, contacts, placed.frictional);
-    if (placed.end() > placed.begin() || k == grains) contacts.blocks.push_back(placed);
+  const CarriedImpulses<Dim> carried(old, n);
+  for (int list = 0; list <= grains; ++list) {
+    ContactBlock block;
+    block.list = list;
+    block.made = reference.made[list];
+    if (kept[list] != nullptr) {
+      block = take_over(old, *kept[list], contacts);
+    } else {
+      append(made[list].frictionless, particles, friction, contacts, block.frictionless);
+      append(made[list].frictional, particles, friction, contacts, block.frictional);
+      for (int c = block.begin(); c < block.end(); ++c)
+        contacts.impulse.push_back(carried.between(contacts.body_a[c], contacts.body_b[c]));
+    }
+    if (block.end() > block.begin() || list == grains) contacts.blocks.push_back(block);
   }
   contacts.normal.resize(contacts.size());
   contacts.gap.resize(contacts.size());
-  contacts.impulse.resize(contacts.size());
-  carry_impulses(old, n, contacts);
   return contacts;
 }
 

@@ -14,6 +14,8 @@ struct ContactBatch {
 /// The contacts inside a grain, or those between grains and with walls.
 struct ContactBlock {
   ContactBatch frictionless, frictional;  ///< one after the other
+  int list = 0;                           ///< of NeighbourReference that it was made from
+  int made = 0;                           ///< when, as NeighbourReference::made
 
   int begin() const { return frictionless.begin; }
   int end() const { return frictional.end; }

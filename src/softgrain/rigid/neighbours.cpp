@@ -14,6 +14,10 @@ namespace {
 /// How far a body may go before grains that were not close may meet, in units of the skin.
 constexpr double far_share = 4;
 
+/// How near to missing a pair a list is made again along with one that might: the arrays of contacts are
+/// then put together once for all of them.
+constexpr double renewed_share = 0.5;
+
 template <int Dim>
 std::vector<GrainRange> grain_ranges(const RigidParticles<Dim>& particles) {
   std::vector<GrainRange> ranges;
@@ -34,9 +38,9 @@ struct Bounds {
   Bounds(const NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles,
          const GrainRange& grain) {
     for (int i = grain.begin; i < grain.end; ++i)
-      centre += (1.0 / (grain.end - grain.begin)) * reference.position[i];
+      centre += (1.0 / (grain.end - grain.begin)) * reference.between[i];
     for (int i = grain.begin; i < grain.end; ++i)
-      radius = std::max(radius, norm(reference.position[i] - centre) + particles.radius[i]);
+      radius = std::max(radius, norm(reference.between[i] - centre) + particles.radius[i]);
   }
 };
 
@@ -63,7 +67,7 @@ void find_close_grains(NeighbourReference<Dim>& reference, const RigidParticles<
         reference.close.push_back({g, grains + w});
 }
 
-/// Displacement of a body since the reference: D of its middle, and d of its particles about it.
+/// Displacement of a body since a reference: D of its middle, and d of its particles about it.
 template <int Dim>
 struct Displacement {
   Vec<Dim> middle;
@@ -71,18 +75,58 @@ struct Displacement {
 };
 
 template <int Dim>
-Displacement<Dim> displacement_of(const NeighbourReference<Dim>& reference,
+Displacement<Dim> displacement_of(const std::vector<Vec<Dim>>& reference,
                                   const RigidParticles<Dim>& particles, const GrainRange& grain) {
   Displacement<Dim> moved;
-  for (int i = grain.begin; i < grain.end; ++i) moved.middle += particles.position[i] - reference.position[i];
+  for (int i = grain.begin; i < grain.end; ++i) moved.middle += particles.position[i] - reference[i];
   moved.middle *= 1.0 / (grain.end - grain.begin);
   double square = 0;
   for (int i = grain.begin; i < grain.end; ++i) {
-    const Vec<Dim> about = particles.position[i] - reference.position[i] - moved.middle;
+    const Vec<Dim> about = particles.position[i] - reference[i] - moved.middle;
     square = std::max(square, dot(about, about));
   }
   moved.most_about = std::sqrt(square);
   return moved;
+}
+
+/// How near each list is to missing a pair: above 1 it might.
+template <int Dim>
+std::vector<double> staleness(const NeighbourReference<Dim>& reference,
+                              const RigidParticles<Dim>& particles) {
+  const int grains = reference.between_list();
+  const double limit = 0.9 * reference.skin;
+  std::vector<double> stale(grains + 1, 0);
+  std::vector<Displacement<Dim>> moved(grains + reference.wall_point.size());
+  parallel_for(grains, [&](int g) {
+    stale[g] = 2 * displacement_of(reference.position, particles, reference.grains[g]).most_about / limit;
+    moved[g] = displacement_of(reference.between, particles, reference.grains[g]);
+  });
+  for (std::size_t w = 0; w < reference.wall_point.size(); ++w)
+    moved[grains + w].middle = particles.walls[w].point - reference.wall_point[w];
+  double& between = stale[grains];
+  for (const Displacement<Dim>& of : moved)
+    between = std::max(between, (norm(of.middle) + of.most_about) / reference.far);
+  for (const auto& [g, h] : reference.close) {
+    const Displacement<Dim>&a = moved[g], &b = moved[h];
+    between = std::max(between, (a.most_about + b.most_about + norm(a.middle - b.middle)) / limit);
+  }
+  return stale;
+}
+
+template <int Dim>
+void take_between(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
+  reference.between = particles.position;
+  reference.wall_point.clear();
+  for (const Wall<Dim>& wall : particles.walls) reference.wall_point.push_back(wall.point);
+  find_close_grains(reference, particles);
+}
+
+/// The part of a reference that its positions do not say.
+template <int Dim>
+void start_lists(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
+  reference.grains = grain_ranges(particles);
+  reference.far = far_share * reference.skin;
+  reference.made.assign(reference.grains.size() + 1, ++reference.generation);
 }
 
 }  // namespace
@@ -90,36 +134,49 @@ Displacement<Dim> displacement_of(const NeighbourReference<Dim>& reference,
 template <int Dim>
 bool needs_rebuild(const NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
   if (reference.position.size() != particles.position.size()) return true;
-  const int grains = static_cast<int>(reference.grains.size());
-  std::vector<Displacement<Dim>> moved(grains + reference.wall_point.size());
-  parallel_for(grains, [&](int g) { moved[g] = displacement_of(reference, particles, reference.grains[g]); });
-  for (std::size_t w = 0; w < reference.wall_point.size(); ++w)
-    moved[grains + w].middle = particles.walls[w].point - reference.wall_point[w];
-  const double limit = 0.9 * reference.skin;
-  for (const Displacement<Dim>& of : moved)
-    if (2 * of.most_about > limit || norm(of.middle) + of.most_about > reference.far) return true;
-  return std::any_of(reference.close.begin(), reference.close.end(), [&](const std::array<int, 2>& pair) {
-    const Displacement<Dim>&a = moved[pair[0]], &b = moved[pair[1]];
-    return a.most_about + b.most_about + norm(a.middle - b.middle) > limit;
-  });
+  const std::vector<double> stale = staleness(reference, particles);
+  return std::any_of(stale.begin(), stale.end(), [](double s) { return !(s <= 1); });
 }
 
 template <int Dim>
-void set_reference(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles,
-                   std::vector<Vec<Dim>> position, std::vector<Vec<Dim>> wall_point) {
-  reference.position = std::move(position);
-  reference.wall_point = std::move(wall_point);
+bool renew_stale_lists(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
+  if (reference.position.size() != particles.position.size()) {
+    set_reference(reference, particles);
+    return true;
+  }
+  const std::vector<double> stale = staleness(reference, particles);
+  if (std::all_of(stale.begin(), stale.end(), [](double s) { return s <= 1; })) return false;
   ++reference.generation;
-  reference.grains = grain_ranges(particles);
-  reference.far = far_share * reference.skin;
-  find_close_grains(reference, particles);
+  for (int list = 0; list <= reference.between_list(); ++list) {
+    if (stale[list] <= renewed_share) continue;
+    reference.made[list] = reference.generation;
+    if (list == reference.between_list()) {
+      take_between(reference, particles);
+      continue;
+    }
+    const auto [begin, end] = reference.grains[list];
+    std::copy(particles.position.begin() + begin, particles.position.begin() + end,
+              reference.position.begin() + begin);
+  }
+  return true;
 }
 
 template <int Dim>
 void set_reference(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
-  std::vector<Vec<Dim>> wall_point;
-  for (const Wall<Dim>& wall : particles.walls) wall_point.push_back(wall.point);
-  set_reference(reference, particles, particles.position, std::move(wall_point));
+  reference.position = particles.position;
+  start_lists(reference, particles);
+  take_between(reference, particles);
+}
+
+template <int Dim>
+void restore_reference(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles,
+                       std::vector<Vec<Dim>> position, std::vector<Vec<Dim>> between,
+                       std::vector<Vec<Dim>> wall_point) {
+  reference.position = std::move(position);
+  reference.between = std::move(between);
+  reference.wall_point = std::move(wall_point);
+  start_lists(reference, particles);
+  find_close_grains(reference, particles);
 }
 
 template <int Dim>
@@ -143,13 +200,15 @@ void detect_contacts(const RigidParticles<Dim>& particles, RigidContacts<Dim>& c
 }
 
 template bool needs_rebuild<2>(const NeighbourReference<2>&, const RigidParticles<2>&);
-template bool needs_rebuild<3>(const NeighbourReference<3>&, const RigidParticles<3>&);
+template bool renew_stale_lists<2>(NeighbourReference<2>&, const RigidParticles<2>&);
 template void set_reference<2>(NeighbourReference<2>&, const RigidParticles<2>&);
+template void restore_reference<2>(NeighbourReference<2>&, const RigidParticles<2>&, std::vector<Vec<2>>,
+                                   std::vector<Vec<2>>, std::vector<Vec<2>>);
+template bool needs_rebuild<3>(const NeighbourReference<3>&, const RigidParticles<3>&);
+template bool renew_stale_lists<3>(NeighbourReference<3>&, const RigidParticles<3>&);
 template void set_reference<3>(NeighbourReference<3>&, const RigidParticles<3>&);
-template void set_reference<2>(NeighbourReference<2>&, const RigidParticles<2>&, std::vector<Vec<2>>,
-                               std::vector<Vec<2>>);
-template void set_reference<3>(NeighbourReference<3>&, const RigidParticles<3>&, std::vector<Vec<3>>,
-                               std::vector<Vec<3>>);
+template void restore_reference<3>(NeighbourReference<3>&, const RigidParticles<3>&, std::vector<Vec<3>>,
+                                   std::vector<Vec<3>>, std::vector<Vec<3>>);
 template void detect_contacts<2>(const RigidParticles<2>&, RigidContacts<2>&);
 template void detect_contacts<3>(const RigidParticles<3>&, RigidContacts<3>&);
 

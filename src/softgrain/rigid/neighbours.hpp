@@ -17,38 +17,52 @@ struct GrainRange {
   int begin = 0, end = 0;
 };
 
-/// The positions from which the lists of pairs were last made. A list holds all pairs within its reach +
-/// skin; it is complete as long as no two bodies, walls included, have approached by more than the skin.
+/// The positions from which the lists of pairs were last made: one list for the inside of each grain, and one
+/// of the pairs between grains and with walls. A list holds all pairs within its reach + skin; it is complete
+/// as long as no two of its bodies have approached by more than the skin.
 template <int Dim>
 struct NeighbourReference {
   double skin = 0;                   ///< [m]
-  std::vector<Vec<Dim>> position;    ///< (n) [m]
-  std::vector<Vec<Dim>> wall_point;  ///< (walls) [m]
-  int generation = 0;                ///< counts the rebuilds
+  std::vector<Vec<Dim>> position;    ///< (n) [m] of the list inside the particle's grain
+  std::vector<Vec<Dim>> between{};   ///< (n) [m] of the list between grains
+  std::vector<Vec<Dim>> wall_point;  ///< (walls) [m] of the list between grains
+  int generation = 0;                ///< counts the times when lists were made again
+  std::vector<int> made{};  ///< (grains + 1) generation of each list, the last is that between grains
+  std::vector<GrainRange> grains{};  ///< all particles, grain by grain
 
-  std::vector<GrainRange> grains{};         ///< all particles, grain by grain
   std::vector<std::array<int, 2>> close{};  ///< grains g < h, or g and wall h - grains.size(), that may meet
                                             ///< before one of them has gone `far`
   double far = 0;                           ///< [m]
+
+  int between_list() const { return static_cast<int>(grains.size()); }
 };
 
 /// True if some pair might be missing. Grains that move as a whole stay where they are for their own
-/// particles: with D the mean displacement of a grain since the reference and d the largest of a particle
+/// particles: with D the mean displacement of a grain since a reference and d the largest of a particle
 /// about it, two particles of one grain have approached by at most 2 d, those of two by d + d' + |D - D'|,
 /// which may reach 90 % of the skin.
 template <int Dim>
 bool needs_rebuild(const NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles);
 
-/// Takes the present positions as reference, or those given (restart).
+/// Takes the present positions as reference of the lists that might miss a pair, and of those more than half
+/// way there. False if there is none.
+template <int Dim>
+bool renew_stale_lists(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles);
+
+/// Takes the present positions as reference of all lists.
 template <int Dim>
 void set_reference(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles);
+
+/// Goes on from references given (restart).
 template <int Dim>
-void set_reference(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles,
-                   std::vector<Vec<Dim>> position, std::vector<Vec<Dim>> wall_point);
+void restore_reference(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles,
+                       std::vector<Vec<Dim>> position, std::vector<Vec<Dim>> between,
+                       std::vector<Vec<Dim>> wall_point);
 
 /// All candidate contacts with gap < skin at the reference: a block for the inside of each grain that has
-/// any, then the block of those between grains and with walls. Impulses of `old` contacts are carried over by
-/// (a, b). The order depends on the reference alone.
+/// any, then the block of those between grains and with walls. Blocks of `old`, made from this reference, are
+/// taken over where their list has not been made again; else impulses are carried over by (a, b). The order
+/// depends on the reference alone.
 template <int Dim>
 RigidContacts<Dim> candidate_contacts(const RigidParticles<Dim>& particles,
                                       const NeighbourReference<Dim>& reference, const FrictionRule& friction,

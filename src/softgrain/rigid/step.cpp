@@ -60,10 +60,7 @@ StepReport RigidDynamics<Dim>::step(const ForceField<Dim>& field, double dt) {
 
 template <int Dim>
 void RigidDynamics<Dim>::update_contacts() {
-  if (needs_rebuild(reference, particles)) {
-    set_reference(reference, particles);
-    rebuild_contacts();
-  }
+  if (renew_stale_lists(reference, particles)) rebuild_contacts();
   detect_contacts(particles, contacts);
 }
 

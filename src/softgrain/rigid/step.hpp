@@ -53,7 +53,7 @@ class RigidDynamics {
   /// Impulse of the particles on wall w in the last step, [N s/m in 2D].
   Vec<Dim> wall_impulse(int wall) const;
 
-  /// Makes the list of contacts again from the reference as it is (restart); impulses by (a, b).
+  /// Makes the contacts of renewed lists again from the reference as it is.
   void rebuild_contacts();
 
  private:

@@ -101,10 +101,8 @@ TEST_CASE_TEMPLATE("four contacts that are solved at once share no particle, and
 
 TEST_CASE("the order of the contacts depends on the reference alone") {
   test::ContactScene<2> scene(12);
-  NeighbourReference<2> reference{.skin = 0.2, .position = {}, .wall_point = {}};
-  set_reference(reference, scene.bodies);
   drift(scene.bodies, 0.05);
-  const auto later = candidate_contacts(scene.bodies, reference, test::mixed_friction, scene.contacts);
+  const auto later = candidate_contacts(scene.bodies, scene.reference, test::mixed_friction, {});
   CHECK(later.body_a == scene.contacts.body_a);
   CHECK(later.body_b == scene.contacts.body_b);
 }
@@ -122,9 +120,8 @@ TEST_CASE_TEMPLATE("impulses follow their two bodies from list to list", Dimensi
   }
   for (Vec<Dim>& v : scene.bodies.velocity) v = random.vector<Dim>(1);
   drift(scene.bodies, 0.1);
-  NeighbourReference<Dim> reference{.skin = 0.2, .position = {}, .wall_point = {}};
-  set_reference(reference, scene.bodies);
-  const auto next = candidate_contacts(scene.bodies, reference, test::mixed_friction, scene.contacts);
+  set_reference(scene.reference, scene.bodies);
+  const auto next = candidate_contacts(scene.bodies, scene.reference, test::mixed_friction, scene.contacts);
   int carried = 0, fresh = 0;
   for (int c = 0; c < next.size(); ++c) {
     const auto old = kept.find({next.body_a[c], next.body_b[c]});
@@ -183,6 +180,79 @@ TEST_CASE("grains that move as a whole need new lists only when they approach an
   CHECK_FALSE(shifted({4, 5}, {-1.9, 0}));  // nobody is near
   CHECK(shifted({4, 5}, {-2.1, 0}));        // but somebody might be now
   CHECK(shifted({0, 1, 2, 3, 4, 5}, {0, 2.1}));
+}
+
+TEST_CASE("only the lists that need it are made again, each from its own reference") {
+  // three grains of two, in a row
+  auto bodies = rigid_particles<2>({{0, 0}, {2, 0}, {4.6, 0}, {6.6, 0}, {9.2, 0}, {11.2, 0}},
+                                   {1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1}, {});
+  bodies.grain = {0, 0, 1, 1, 2, 2};
+  NeighbourReference<2> reference{.skin = 1, .position = {}, .wall_point = {}};
+  CHECK(renew_stale_lists(reference, bodies));  // never made
+  CHECK(reference.made == std::vector{1, 1, 1, 1});
+  CHECK_FALSE(renew_stale_lists(reference, bodies));
+
+  const auto start = bodies.position;
+  const auto stretch = [&](int grain, double by) {  // each primary goes by / 2
+    bodies.position[2 * grain][1] += by / 2, bodies.position[2 * grain + 1][1] -= by / 2;
+  };
+  stretch(0, 0.88);  // 2 d = 0.88 < 0.9
+  stretch(1, 0.46);  // more than half way, 0.45
+  stretch(2, 0.44);
+  bodies.position[4][1] -= 0.44, bodies.position[5][1] += 0.44;  // and half back
+  CHECK_FALSE(renew_stale_lists(reference, bodies));
+  stretch(0, 0.04);
+  CHECK(renew_stale_lists(reference, bodies));
+  CHECK(reference.made[0] == 2);
+  CHECK(reference.made[1] == 2);
+  CHECK(reference.made[2] == 1);
+  for (const int i : {0, 1, 2, 3}) CHECK(reference.position[i] == bodies.position[i]);
+  for (const int i : {4, 5}) CHECK(reference.position[i] == start[i]);
+
+  // a shift of a whole grain asks for the pairs between grains alone
+  const std::vector<Vec<2>> inside = reference.position;
+  for (const int i : {4, 5}) bodies.position[i][0] -= 1;
+  CHECK(renew_stale_lists(reference, bodies));
+  CHECK(reference.made == std::vector{2, 2, 1, 3});
+  CHECK(reference.position == inside);
+  CHECK(reference.between == bodies.position);
+}
+
+TEST_CASE_TEMPLATE("lists that are kept hold the same contacts, impulses and order as when made again",
+                   Dimension, Plane, Space) {
+  constexpr int Dim = Dimension::value;
+  auto bodies = test::random_bodies<Dim>(Dim == 2 ? 12 : 6, 4);
+  const int n = bodies.size(), size = n / 6;
+  for (int i = 0; i < n; ++i) bodies.grain[i] = i / size;
+  NeighbourReference<Dim> reference{.skin = 0.2, .position = {}, .wall_point = {}};
+  set_reference(reference, bodies);
+  auto old = candidate_contacts(bodies, reference, test::mixed_friction, {});
+  test::RandomNumbers random(5);
+  for (Vec<Dim>& p : old.impulse) p = random.vector<Dim>(1), p[0] = random.uniform(0.1, 1);
+  for (int i = 2 * size; i < 3 * size; ++i) bodies.position[i] += random.vector<Dim>(0.3);
+  REQUIRE(renew_stale_lists(reference, bodies));
+  REQUIRE(reference.made[2] == 2);
+  REQUIRE(reference.made[1] == 1);
+
+  const auto kept = candidate_contacts(bodies, reference, test::mixed_friction, old);
+  auto other = old;
+  for (ContactBlock& block : other.blocks) block.made = -1;  // nothing to take over
+  const auto fresh = candidate_contacts(bodies, reference, test::mixed_friction, other);
+  CHECK(kept.body_a == fresh.body_a);
+  CHECK(kept.body_b == fresh.body_b);
+  CHECK(kept.inverse_mass_a == fresh.inverse_mass_a);
+  CHECK(kept.inverse_mass_b == fresh.inverse_mass_b);
+  CHECK(kept.inverse_delassus == fresh.inverse_delassus);
+  CHECK(kept.friction == fresh.friction);
+  CHECK((kept.impulse == fresh.impulse));
+  REQUIRE(kept.blocks.size() == fresh.blocks.size());
+  for (std::size_t k = 0; k < kept.blocks.size(); ++k) {
+    CHECK(kept.blocks[k].list == fresh.blocks[k].list);
+    CHECK(kept.blocks[k].made == fresh.blocks[k].made);
+    CHECK(kept.blocks[k].frictionless.fours_end == fresh.blocks[k].frictionless.fours_end);
+    CHECK(kept.blocks[k].frictional.begin == fresh.blocks[k].frictional.begin);
+    CHECK(kept.blocks[k].end() == fresh.blocks[k].end());
+  }
 }
 
 TEST_CASE("gaps and normals lead from a to b, and from a particle into its wall") {
