@@ -18,7 +18,8 @@ TEST_CASE("snapshots of earlier versions load, and their runs go on") {
     simulation->restore(snapshot.checkpoint);
     CHECK(simulation->steps_done() == snapshot.checkpoint.step);
     CHECK(simulation->time() == snapshot.checkpoint.time);
-    CHECK(simulation->checkpoint().arrays.size() == snapshot.checkpoint.arrays.size());
+    const softgrain::Checkpoint again = simulation->checkpoint();  // may say more than the old one did
+    for (const auto& array : snapshot.checkpoint.arrays) CHECK(again.arrays.contains(array.first));
     simulation->step();
     CHECK(simulation->steps_done() == snapshot.checkpoint.step + 1);
   }
