@@ -39,6 +39,7 @@ docs       mkdocs                  the documentation as a site
 docs       libjs-katex             its equations
 bench      libbox2d-dev            a peer to measure against
 bench      libsiconos-numerics-dev a peer to measure against
+bench      liblammps-dev           a peer to measure against
 viewer     chromium                tests the page of softgrain report
 viewer     npm                     tools/check_viewer
 torture    tmux                    a real terminal for the test of signals
