@@ -92,7 +92,7 @@ void measure_parts(Results& results, const std::string& name, ImplicitDynamics& 
   };
   const auto assemble = for_batches([&](std::size_t b) {
     const GrainBatch& batch = grains.batches[b];
-    A[b].clear();
+    A[b].clear(Precision::single);  // as ImplicitDynamics for these steps
     add_stiffness(grains, batch, A[b]);
     for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
       const Wide m = grains.node_mass(batch, i) * Wide(1 / (implicit_dt * implicit_dt));
@@ -110,6 +110,7 @@ void measure_parts(Results& results, const std::string& name, ImplicitDynamics& 
   const std::vector<double> friction(contacts.size(), 0.0);
   std::vector<Vec<2>> impulse;
   SolverReport solved;
+  ElasticScratch scratch;
 
   assemble();
   double factored = 0;
@@ -129,9 +130,9 @@ void measure_parts(Results& results, const std::string& name, ImplicitDynamics& 
         A[b].finish_solve(numbers(half[b]), numbers(kept), numbers(half[b]));
       }),
       [&] { contacts = neighbours.detect(grains, state); },
-      [&] { ElasticContacts(grains, contacts, compliance, increment, implicit_dt); },
+      [&] { ElasticContacts(grains, contacts, compliance, increment, implicit_dt, scratch); },
       [&] {
-        ElasticContacts system(grains, contacts, compliance, increment, implicit_dt);
+        ElasticContacts system(grains, contacts, compliance, increment, implicit_dt, scratch);
         impulse = carried_impulses(grains, dynamics.contacts, dynamics.impulse, contacts);
         for (int c = 0; c < system.size(); ++c)
           if (impulse[c][0] > 0) system.apply_impulse(c, impulse[c]);

@@ -9,7 +9,8 @@
 namespace softgrain {
 namespace {
 
-using Block = std::array<Wide, 4>;
+template <class Entry>
+using Block = std::array<Entry, 4>;
 
 /// Minimum degree on the first nodes, then the kept ones; `graph` becomes the pattern of the factor. Returns
 /// the nodes in the order of elimination.
@@ -39,7 +40,8 @@ std::vector<int> eliminate(std::vector<std::set<int>>& graph, int kept) {
 }
 
 /// C -= A B^T for 2 x 2 blocks.
-inline void subtract_product(Block& C, const Block& A, const Block& B) {
+template <class Entry>
+inline void subtract_product(Block<Entry>& C, const Block<Entry>& A, const Block<Entry>& B) {
   C[0] -= A[0] * B[0] + A[1] * B[1];
   C[1] -= A[0] * B[2] + A[1] * B[3];
   C[2] -= A[2] * B[0] + A[3] * B[1];
@@ -86,44 +88,66 @@ int BlockPattern::block(int node_i, int node_j) const {
   return static_cast<int>(found - row_.begin());
 }
 
-BatchedCholesky::BatchedCholesky(const BlockPattern& pattern)
-    : pattern_(pattern), value_(pattern.blocks()), place_(pattern.nodes()), scratch_(2 * pattern.nodes()) {}
+BatchedCholesky::BatchedCholesky(const BlockPattern& pattern) : pattern_(pattern), place_(pattern.nodes()) {}
 
-void BatchedCholesky::clear() { std::fill(value_.begin(), value_.end(), Block{}); }
-
-void BatchedCholesky::add(int node_i, int node_j, const Block& block) {
-  const bool flip = pattern_.transposed(node_i, node_j);
-  add_block(pattern_.block(node_i, node_j), flip ? Block{block[0], block[2], block[1], block[3]} : block);
+template <class Entry>
+void BatchedCholesky::clear(std::size_t blocks) {
+  if (!std::holds_alternative<Store<Entry>>(store_)) store_ = Store<Entry>{};
+  Store<Entry>& store = std::get<Store<Entry>>(store_);
+  store.value.assign(blocks, {});
+  store.scratch.resize(2 * pattern_.nodes());
 }
 
-void BatchedCholesky::add_block(int block, const Block& value) {
-  for (int k = 0; k < 4; ++k) value_[block][k] += value[k];
+void BatchedCholesky::clear(Precision precision) {
+  const auto blocks = static_cast<std::size_t>(pattern_.blocks());
+  precision == Precision::single ? clear<Narrow>(blocks) : clear<Wide>(blocks);
+}
+
+void BatchedCholesky::add(int node_i, int node_j, const Block<Wide>& block) {
+  const bool flip = pattern_.transposed(node_i, node_j);
+  add_block(pattern_.block(node_i, node_j),
+            flip ? Block<Wide>{block[0], block[2], block[1], block[3]} : block);
+}
+
+void BatchedCholesky::add_block(int block, const Block<Wide>& value) {
+  std::visit(
+      [&]<class Entry>(Store<Entry>& store) {
+        for (int k = 0; k < 4; ++k) store.value[block][k] += Entry(value[k]);
+      },
+      store_);
+}
+
+unsigned BatchedCholesky::factor() {
+  return std::visit([&](auto& store) { return factor(store); }, store_);
 }
 
 /// Left-looking by columns. A diagonal block holds {1/l11, -, l21, 1/l22} of its 2 x 2 factor.
-unsigned BatchedCholesky::factor() {
+template <class Entry>
+unsigned BatchedCholesky::factor(Store<Entry>& store) {
   const std::vector<int>&begin = pattern_.column_begin_, &row = pattern_.row_;
   const std::vector<int>&left_begin = pattern_.left_begin_, &left = pattern_.left_;
+  std::vector<Block<Entry>>& value = store.value;
+  const Entry one(Wide(1.0));
   unsigned failed = 0;
   for (int k = 0; k < pattern_.nodes(); ++k) {
     for (int s = begin[k]; s < begin[k + 1]; ++s) place_[row[s]] = s;
     // A_ik -= sum_j L_ij L_kj^T
     for (int l = left_begin[k]; l < left_begin[k + 1]; ++l) {
       const int first = left[l];
-      const Block L_kj = value_[first];
+      const Block<Entry> L_kj = value[first];
       const int end = begin[pattern_.column_of_[first] + 1];
-      for (int s = first; s < end; ++s) subtract_product(value_[place_[row[s]]], value_[s], L_kj);
+      for (int s = first; s < end; ++s) subtract_product(value[place_[row[s]]], value[s], L_kj);
     }
-    Block& diagonal = value_[begin[k]];
-    const Wide l11 = sqrt(diagonal[0]), r11 = 1 / l11, l21 = diagonal[2] * r11;
-    const Wide l22 = sqrt(diagonal[3] - l21 * l21), r22 = 1 / l22;
+    Block<Entry>& diagonal = value[begin[k]];
+    const Entry l11 = sqrt(diagonal[0]), r11 = one / l11, l21 = diagonal[2] * r11;
+    const Entry l22 = sqrt(diagonal[3] - l21 * l21), r22 = one / l22;
     for (int lane = 0; lane < Wide::size; ++lane)
       if (!(l11[lane] > 0 && l22[lane] > 0)) failed |= 1u << lane;
-    diagonal = {r11, Wide{}, l21, r22};
+    diagonal = {r11, Entry{}, l21, r22};
     // L_ik = A_ik L_kk^-T
     for (int s = begin[k] + 1; s < begin[k + 1]; ++s) {
-      Block& A = value_[s];
-      const Wide a = A[0] * r11, c = A[2] * r11;
+      Block<Entry>& A = value[s];
+      const Entry a = A[0] * r11, c = A[2] * r11;
       A = {a, (A[1] - a * l21) * r22, c, (A[3] - c * l21) * r22};
     }
   }
@@ -131,14 +155,15 @@ unsigned BatchedCholesky::factor() {
 }
 
 /// y <- L^-1 y from elimination place `first` on.
-void BatchedCholesky::forward(Wide* y, int first) const {
+template <class Entry>
+void BatchedCholesky::forward(const Store<Entry>& store, Entry* y, int first) const {
   const std::vector<int>&begin = pattern_.column_begin_, &row = pattern_.row_;
   for (int k = first; k < pattern_.nodes(); ++k) {
-    const Block& diagonal = value_[begin[k]];
-    const Wide y0 = y[2 * k] * diagonal[0], y1 = (y[2 * k + 1] - diagonal[2] * y0) * diagonal[3];
+    const Block<Entry>& diagonal = store.value[begin[k]];
+    const Entry y0 = y[2 * k] * diagonal[0], y1 = (y[2 * k + 1] - diagonal[2] * y0) * diagonal[3];
     y[2 * k] = y0, y[2 * k + 1] = y1;
     for (int s = begin[k] + 1; s < begin[k + 1]; ++s) {
-      const Block& L = value_[s];
+      const Block<Entry>& L = store.value[s];
       y[2 * row[s]] -= L[0] * y0 + L[1] * y1;
       y[2 * row[s] + 1] -= L[2] * y0 + L[3] * y1;
     }
@@ -146,66 +171,80 @@ void BatchedCholesky::forward(Wide* y, int first) const {
 }
 
 /// y <- L^-T y down to elimination place `first`.
-void BatchedCholesky::backward(Wide* y, int first) const {
+template <class Entry>
+void BatchedCholesky::backward(const Store<Entry>& store, Entry* y, int first) const {
   const std::vector<int>&begin = pattern_.column_begin_, &row = pattern_.row_;
   for (int k = pattern_.nodes() - 1; k >= first; --k) {
-    Wide y0 = y[2 * k], y1 = y[2 * k + 1];
+    Entry y0 = y[2 * k], y1 = y[2 * k + 1];
     for (int s = begin[k] + 1; s < begin[k + 1]; ++s) {
-      const Block& L = value_[s];
-      const Wide z0 = y[2 * row[s]], z1 = y[2 * row[s] + 1];
+      const Block<Entry>& L = store.value[s];
+      const Entry z0 = y[2 * row[s]], z1 = y[2 * row[s] + 1];
       y0 -= L[0] * z0 + L[2] * z1;
       y1 -= L[1] * z0 + L[3] * z1;
     }
-    const Block& diagonal = value_[begin[k]];
+    const Block<Entry>& diagonal = store.value[begin[k]];
     y[2 * k + 1] = y1 * diagonal[3];
     y[2 * k] = (y0 - diagonal[2] * y[2 * k + 1]) * diagonal[0];
   }
 }
 
 void BatchedCholesky::solve(std::span<Wide> x) const {
-  Wide* y = scratch_.data();
-  for (int i = 0; i < pattern_.nodes(); ++i)
-    for (int d = 0; d < 2; ++d) y[2 * pattern_.order_[i] + d] = x[2 * i + d];
-  forward(y, 0);
-  backward(y, 0);
-  for (int i = 0; i < pattern_.nodes(); ++i)
-    for (int d = 0; d < 2; ++d) x[2 * i + d] = y[2 * pattern_.order_[i] + d];
+  const std::vector<Wide> h(2 * pattern_.kept_);
+  std::vector<Wide> y(x.size()), kept(h);
+  begin_solve(x, y, kept);
+  finish_solve(y, h, x);
 }
 
 void BatchedCholesky::begin_solve(std::span<const Wide> x, std::span<Wide> y, std::span<Wide> kept) const {
-  for (int i = 0; i < pattern_.nodes(); ++i)
-    for (int d = 0; d < 2; ++d) y[2 * pattern_.order_[i] + d] = x[2 * i + d];
-  forward(y.data(), 0);
-  const int first = pattern_.nodes() - pattern_.kept_;
-  std::copy(y.begin() + 2 * first, y.end(), scratch_.begin() + 2 * first);
-  backward(scratch_.data(), first);
-  std::copy(scratch_.begin() + 2 * first, scratch_.end(), kept.begin());
+  std::visit(
+      [&]<class Entry>(Store<Entry>& store) {
+        Entry* z = store.scratch.data();
+        for (int i = 0; i < pattern_.nodes(); ++i)
+          for (int d = 0; d < 2; ++d) z[2 * pattern_.order_[i] + d] = Entry(x[2 * i + d]);
+        forward(store, z, 0);
+        for (int k = 0; k < 2 * pattern_.nodes(); ++k) y[k] = Wide(z[k]);
+        const int first = pattern_.nodes() - pattern_.kept_;
+        backward(store, z, first);
+        for (int k = 0; k < 2 * pattern_.kept_; ++k) kept[k] = Wide(z[2 * first + k]);
+      },
+      store_);
 }
 
-void BatchedCholesky::finish_solve(std::span<Wide> y, std::span<const Wide> h, std::span<Wide> x) const {
-  const int first = pattern_.nodes() - pattern_.kept_;
-  std::copy(h.begin(), h.end(), scratch_.begin() + 2 * first);
-  forward(scratch_.data(), first);
-  for (int k = 2 * first; k < 2 * pattern_.nodes(); ++k) y[k] += scratch_[k];
-  backward(y.data(), 0);
-  for (int i = 0; i < pattern_.nodes(); ++i)
-    for (int d = 0; d < 2; ++d) x[2 * i + d] = y[2 * pattern_.order_[i] + d];
+void BatchedCholesky::finish_solve(std::span<const Wide> y, std::span<const Wide> h,
+                                   std::span<Wide> x) const {
+  std::visit(
+      [&]<class Entry>(Store<Entry>& store) {
+        const int first = pattern_.nodes() - pattern_.kept_;
+        Entry* z = store.scratch.data();
+        for (int k = 0; k < 2 * pattern_.kept_; ++k) z[2 * first + k] = Entry(h[k]);
+        forward(store, z, first);
+        for (int k = 0; k < 2 * first; ++k) z[k] = Entry(y[k]);
+        for (int k = 2 * first; k < 2 * pattern_.nodes(); ++k) z[k] += Entry(y[k]);
+        backward(store, z, 0);
+        for (int i = 0; i < pattern_.nodes(); ++i)
+          for (int d = 0; d < 2; ++d) x[2 * i + d] = Wide(z[2 * pattern_.order_[i] + d]);
+      },
+      store_);
 }
 
 /// Column by column of the identity; only the end of the factor takes part, and rows above the column follow
 /// by symmetry.
 void BatchedCholesky::kept_inverse(std::span<Wide> inverse) const {
   const int n = pattern_.nodes(), kept = pattern_.kept_, first = n - kept;
-  Wide* y = scratch_.data();
-  for (int column = 0; column < 2 * kept; ++column) {
-    const int node = column / 2;
-    std::fill(y + 2 * (first + node), y + 2 * n, Wide{});
-    y[2 * first + column] = 1.0;
-    forward(y, first + node);
-    backward(y, first + node);
-    for (int k = 2 * node; k < 2 * kept; ++k)
-      inverse[k * 2 * kept + column] = inverse[column * 2 * kept + k] = y[2 * first + k];
-  }
+  std::visit(
+      [&]<class Entry>(Store<Entry>& store) {
+        Entry* y = store.scratch.data();
+        for (int column = 0; column < 2 * kept; ++column) {
+          const int node = column / 2;
+          std::fill(y + 2 * (first + node), y + 2 * n, Entry{});
+          y[2 * first + column] = Entry(Wide(1.0));
+          forward(store, y, first + node);
+          backward(store, y, first + node);
+          for (int k = 2 * node; k < 2 * kept; ++k)
+            inverse[k * 2 * kept + column] = inverse[column * 2 * kept + k] = Wide(y[2 * first + k]);
+        }
+      },
+      store_);
 }
 
 }  // namespace softgrain

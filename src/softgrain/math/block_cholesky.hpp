@@ -1,9 +1,10 @@
 #pragma once
 #include <array>
 #include <span>
+#include <variant>
 #include <vector>
 
-#include "softgrain/math/wide.hpp"
+#include "softgrain/math/narrow.hpp"
 
 namespace softgrain {
 
@@ -38,15 +39,19 @@ class BlockPattern {
   std::vector<int> column_of_;          // of each block
 };
 
+enum class Precision { full, single };
+
 /// Cholesky factors A = L L^T of eight matrices of one pattern at once, one in each lane. Own code because no
-/// library factors batches in lanes: 2.7 times faster than CHOLMOD one by one (docs/decisions/0009).
+/// library factors batches in lanes: 2.7 times faster than CHOLMOD one by one (docs/decisions/0009). In
+/// single precision a factor takes half the memory and about half the time, and solutions have a relative
+/// error of about 1e-7 times the condition of A: for methods that correct them.
 class BatchedCholesky {
  public:
   /// Keeps a reference to the pattern.
   explicit BatchedCholesky(const BlockPattern& pattern);
 
-  /// Sets all entries to zero, before the matrix is summed up with `add`.
-  void clear();
+  /// Sets all entries to zero, before the matrix is summed up with `add`, and the precision from now on.
+  void clear(Precision precision = Precision::full);
   /// A_ij += block (row-major 2 x 2); for i != j only one of (i, j) and (j, i) may be added.
   void add(int node_i, int node_j, const std::array<Wide, 4>& block);
   /// The same by block number, for inner loops; the block must be in the orientation that is stored.
@@ -60,20 +65,32 @@ class BatchedCholesky {
   /// The first half of a solve: y = L^-1 x (2 nodes, in elimination order), and the solution on the kept
   /// nodes, (A^-1 x)_b (2 kept).
   void begin_solve(std::span<const Wide> x, std::span<Wide> y, std::span<Wide> kept) const;
-  /// The second half, with more on the kept nodes that is known only now: A^-1 (x + h), h: (2 kept).
-  /// Overwrites y; the solution goes to x, in the order of the nodes.
-  void finish_solve(std::span<Wide> y, std::span<const Wide> h, std::span<Wide> x) const;
+  /// The second half, with more on the kept nodes that is known only now: A^-1 (x + h), h: (2 kept). The
+  /// solution goes to x, in the order of the nodes.
+  void finish_solve(std::span<const Wide> y, std::span<const Wide> h, std::span<Wide> x) const;
   /// Compliance of the kept nodes, (A^-1)_bb: (2 kept)^2 row-major.
   void kept_inverse(std::span<Wide> inverse) const;
 
  private:
-  void forward(Wide* y, int first) const;
-  void backward(Wide* y, int first) const;
+  /// The numbers, eight in each Entry.
+  template <class Entry>
+  struct Store {
+    std::vector<std::array<Entry, 4>> value;  // by block; diagonal: 1/l11, -, l21, 1/l22, see factor()
+    std::vector<Entry> scratch;               // (2 nodes) in elimination order
+  };
+
+  template <class Entry>
+  void clear(std::size_t blocks);
+  template <class Entry>
+  unsigned factor(Store<Entry>& store);
+  template <class Entry>
+  void forward(const Store<Entry>& store, Entry* y, int first) const;
+  template <class Entry>
+  void backward(const Store<Entry>& store, Entry* y, int first) const;
 
   const BlockPattern& pattern_;
-  std::vector<std::array<Wide, 4>> value_;  // by block; diagonal: l11, 1/l22 ... see factor()
-  std::vector<int> place_;                  // scratch: block of each row in the present column
-  mutable std::vector<Wide> scratch_;       // (2 nodes) in elimination order
+  mutable std::variant<Store<Wide>, Store<Narrow>> store_;
+  std::vector<int> place_;  // scratch: block of each row in the present column
 };
 
 }  // namespace softgrain

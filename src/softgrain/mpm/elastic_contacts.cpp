@@ -4,8 +4,13 @@ namespace softgrain {
 
 ElasticContacts::ElasticContacts(const SoftGrains& grains, std::span<const OutlineContact> contacts,
                                  std::span<const OutlineCompliance> compliance,
-                                 std::span<const Vec<2>> increment, double dt)
-    : grains_(grains), contacts_(contacts), dt_(dt) {
+                                 std::span<const Vec<2>> increment, double dt, ElasticScratch& scratch)
+    : grains_(grains),
+      contacts_(contacts),
+      dt_(dt),
+      compliance_(scratch.compliance),
+      columns_(scratch.columns) {
+  columns_.clear();
   number_vertices();
   copy_compliance(compliance);
   for (int v = 0; v < grains.outline_size(); ++v) {

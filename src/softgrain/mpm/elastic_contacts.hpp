@@ -13,6 +13,12 @@ namespace softgrain {
 /// per m depth].
 using OutlineCompliance = std::vector<Wide>;
 
+/// Memory of an ElasticContacts, kept from one to the next: megabytes that are written once, whose pages
+/// would otherwise be given back to the system and asked for again in every Newton iteration.
+struct ElasticScratch {
+  std::vector<double> compliance, columns;
+};
+
 /// Contacts of implicit grains as a ContactSystem (theory: W = H^T A^-1 H/dt^2, with A = M/dt^2 + K): the
 /// impulse sees the implicit operator, condensed grain by grain on the vertices that take part in contacts.
 /// Velocities are those over the step:
@@ -23,8 +29,8 @@ class ElasticContacts {
   /// increment: (outline vertices) du without contact forces [m]. compliance: one for each batch of the
   /// grains.
   ElasticContacts(const SoftGrains& grains, std::span<const OutlineContact> contacts,
-                  std::span<const OutlineCompliance> compliance, std::span<const Vec<2>> increment,
-                  double dt);
+                  std::span<const OutlineCompliance> compliance, std::span<const Vec<2>> increment, double dt,
+                  ElasticScratch& scratch);
 
   int size() const { return static_cast<int>(contacts_.size()); }
   const Mat<2>& delassus_block(int contact) const { return delassus_[contact]; }
@@ -59,8 +65,8 @@ class ElasticContacts {
   std::vector<Condensed> condensed_;  // (grains)
   std::vector<Place> places_;         // (contacts)
   std::vector<double> increment_;     // du of the vertices in contact, grain by grain
-  std::vector<double> compliance_;
-  std::vector<double>
+  std::vector<double>& compliance_;
+  std::vector<double>&
       columns_;  // du of the slave's, then of the master's grain under a unit force at a contact
   std::vector<Mat<2>> delassus_;
 };

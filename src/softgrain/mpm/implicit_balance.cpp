@@ -6,7 +6,7 @@ namespace softgrain {
 
 /// Before the contacts are found anew: the system of the last iteration, free of impulses.
 void ImplicitDynamics::catch_problem(double dt) {
-  ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt);
+  ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt, scratch_);
   caught = {contact_problem_of<2>(system, friction_of_contacts()), flat<2>(impulse)};
 }
 

@@ -8,6 +8,7 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/mpm/equilibrium.hpp"
+#include "softgrain/mpm/explicit_step.hpp"
 
 namespace softgrain {
 namespace {
@@ -37,6 +38,7 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
     mean_radius_ += grains.radius(g) / grains.size();
     smallest_radius_ = std::min(smallest_radius_, grains.radius(g));
   }
+  explicit_step_ = stable_time_step(grains, 1);
   for (const GrainBatch& batch : grains.batches) {
     matrix_.emplace_back(batch.topology->pattern);
     const std::size_t width = 2 * batch.topology->grid.outline_nodes();
@@ -132,11 +134,13 @@ ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, S
     }
   }
   report.factorisations += batches();
+  const Precision precision =
+      dt <= options.single_precision_steps * explicit_step_ ? Precision::single : Precision::full;
   std::vector<int> failed(batches(), -1);
   parallel_for(batches(), [&](int b) {
     const GrainBatch& batch = grains.batches[b];
     BatchedCholesky& A = matrix_[b];
-    A.clear();
+    A.clear(precision);
     add_stiffness(grains, batch, A);
     WideVectors diagonal(batch.position.size());
     grains.scatter_outline(pressure, batch, diagonal);
@@ -199,7 +203,7 @@ bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   std::vector<OutlineContact> found = neighbours_.detect(grains, outline_);
   impulse = carried_impulses(grains, contacts, impulse, found);
   contacts = std::move(found);
-  ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt);
+  ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt, scratch_);
   for (int c = 0; c < system.size(); ++c)
     if (impulse[c][0] > 0) system.apply_impulse(c, impulse[c]);
   SolverOptions solver = options.solver;

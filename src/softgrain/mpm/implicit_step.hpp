@@ -17,7 +17,10 @@ struct ImplicitOptions {
   int max_iterations = 40;  ///< of Newton's method
   double proximal =
       0.5;  ///< c of the term c p/l on the outline's diagonal of the tangent (p/l contact pressure)
-  int max_halvings = 8;                     ///< of the time step before NumericalError
+  int max_halvings = 8;  ///< of the time step before NumericalError
+  /// A is factored in single precision for steps up to this many explicit ones (h/c, stable_time_step); its
+  /// condition is about 4 times the square of their ratio (docs/decisions/0019). 0: never
+  double single_precision_steps = 60;
   SolverOptions solver{.max_sweeps = 500};  ///< NLGS, to a quarter of Newton's tolerance
   double friction = 0;                      ///< mu between grains
   double wall_friction = 0;                 ///< mu against walls
@@ -70,9 +73,11 @@ class ImplicitDynamics {
   std::vector<double> friction_of_contacts() const;
 
   double mean_radius_ = 0, smallest_radius_ = 0;
+  double explicit_step_ = 0;  // h/c [s]
   OutlineNeighbours neighbours_;
   std::vector<BatchedCholesky> matrix_;
   std::vector<OutlineCompliance> compliance_;
+  ElasticScratch scratch_;
   int batches() const { return static_cast<int>(grains.batches.size()); }
   bool none_failed(std::span<const int> grain_of_batch);
 

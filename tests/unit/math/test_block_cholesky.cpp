@@ -27,11 +27,12 @@ Edges random_graph(int nodes, int chords, test::RandomNumbers& random) {
 
 /// Eight random symmetric matrices on a graph, positive definite by their diagonal: dense, and in the lanes.
 struct EightMatrices {
-  EightMatrices(const BlockPattern& pattern, const Edges& edges, test::RandomNumbers& random)
+  EightMatrices(const BlockPattern& pattern, const Edges& edges, test::RandomNumbers& random,
+                Precision precision = Precision::full)
       : lanes(pattern) {
     const int n = pattern.nodes();
     for (auto& A : dense) A = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-    lanes.clear();
+    lanes.clear(precision);
     for (const auto& [i, j] : edges) add(random.uniform(0, 1) < 0.5 ? i : j, i, j, random);
     for (int i = 0; i < n; ++i) {
       std::array<Wide, 4> block;
@@ -93,6 +94,29 @@ TEST_CASE("eight different matrices are factored and solved at once as Eigen doe
       CHECK(solution_error(A, 0xff, random) < 1e-14);
     }
   }
+}
+
+TEST_CASE("in single precision the same matrices are solved to its round-off") {
+  test::RandomNumbers random(11);
+  const int nodes = 40, kept = 12;
+  const Edges edges = random_graph(nodes, nodes, random);
+  const BlockPattern pattern(nodes, edges, kept);
+  EightMatrices A(pattern, edges, random, Precision::single);
+  REQUIRE(A.lanes.factor() == 0);
+  const double error = solution_error(A, 0xff, random);  // of solutions near 0.05
+  CHECK(error < 5e-8);
+  CHECK(error > 1e-10);
+  std::vector<Wide> compliance(4 * kept * kept);
+  A.lanes.kept_inverse(compliance);
+  const Eigen::MatrixXd corner = A.dense[5].inverse().bottomRightCorner(2 * kept, 2 * kept);
+  for (int i = 0; i < 4 * kept * kept; ++i)
+    CHECK(std::abs(compliance[i][5] - corner(i / (2 * kept), i % (2 * kept))) < 5e-8);
+  A.lanes.clear();  // and back
+  for (int i = 0; i < nodes; ++i) A.lanes.add(i, i, {2.0, 0.0, 0.0, 2.0});
+  REQUIRE(A.lanes.factor() == 0);
+  std::vector<Wide> x(2 * nodes, Wide(1.0));
+  A.lanes.solve(x);
+  CHECK(x[7][3] == doctest::Approx(0.5).epsilon(1e-15));
 }
 
 TEST_CASE("a solve in two halves takes more on the kept nodes in between") {

@@ -123,7 +123,8 @@ TEST_CASE("the Delassus matrix of elastic grains is H^T A^-1 H / dt^2 of the who
     const int first = 2 * s.grains.outline_begin(batch.grain[0]), width = 2 * grid.outline_nodes();
     C.block(first, first, width, width) = dense.inverse().bottomRightCorner(width, width);
   }
-  ElasticContacts system(s.grains, s.contacts, compliance, s.vectors, dt);
+  ElasticScratch scratch;
+  ElasticContacts system(s.grains, s.contacts, compliance, s.vectors, dt, scratch);
   const Eigen::MatrixXd H = contact_map(s), W = H.transpose() * C * H / (dt * dt);
   const Eigen::MatrixXd measured = delassus_by_impulses(system);
   CHECK((measured - W).cwiseAbs().maxCoeff() < 1e-6 * W.cwiseAbs().maxCoeff());  // differences of the force

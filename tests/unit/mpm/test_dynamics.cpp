@@ -163,6 +163,26 @@ TEST_CASE("a step that is too long for Newton's method is halved, and the walls 
   CHECK(report.penetration_max < 1e-3);
 }
 
+TEST_CASE("factors in single precision cost no iterations and no accuracy up to their longest step") {
+  const SoftGrains grains({test::placed(test::disk(6), 1e-3, {0, 1e-3})}, make_law("neo_hookean", 1e7, 0.3),
+                          1000, false);
+  ImplicitOptions options{.tolerance = 1e-5};
+  const double dt = 0.99 * options.single_precision_steps * stable_time_step(grains, 1);
+  const std::vector<Wall<2>> plates{test::floor_at(0),
+                                    {.point = {0, 2e-3}, .normal = {0, -1}, .velocity = {0, -0.02e-3 / dt}}};
+  ImplicitDynamics single(grains, plates, options);
+  options.single_precision_steps = 0;
+  ImplicitDynamics full(grains, plates, options);
+  for (int step = 0; step < 20; ++step) {
+    const SoftStepReport a = single.step(dt), b = full.step(dt);
+    CHECK(a.converged);
+    CHECK(a.rejected == b.rejected);
+    CHECK(a.iterations <= b.iterations + 2);
+    CHECK(single.wall_impulse(1)[1] == doctest::Approx(full.wall_impulse(1)[1]).epsilon(1e-5));
+  }
+  CHECK(single.wall_impulse(1)[1] != full.wall_impulse(1)[1]);
+}
+
 TEST_CASE("a step that no halving saves ends with a NumericalError that names the grain") {
   const SoftGrains grains({test::placed(test::disk(2), 1e-3, {0, 0})}, make_law("neo_hookean", 1e6, 0.3),
                           1000, false);

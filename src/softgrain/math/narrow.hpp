@@ -1,0 +1,40 @@
+#pragma once
+#include <cmath>
+
+#include "softgrain/math/wide.hpp"
+
+namespace softgrain {
+
+/// Eight numbers in single precision: half the memory and half the work of Wide, for what is corrected later.
+struct Narrow {
+  using Floats = float __attribute__((vector_size(32)));
+  Floats lanes{};
+
+  Narrow() = default;
+  explicit Narrow(const Floats& value) : lanes(value) {}
+  explicit Narrow(const Wide& value) {
+    using Four = float __attribute__((vector_size(16)));
+    lanes = __builtin_shufflevector(__builtin_convertvector(value.low, Four),
+                                    __builtin_convertvector(value.high, Four), 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+  explicit operator Wide() const {
+    return {__builtin_convertvector(__builtin_shufflevector(lanes, lanes, 0, 1, 2, 3), Lanes),
+            __builtin_convertvector(__builtin_shufflevector(lanes, lanes, 4, 5, 6, 7), Lanes)};
+  }
+
+  float operator[](int lane) const { return lanes[lane]; }
+  Narrow& operator+=(const Narrow& b) { return lanes += b.lanes, *this; }
+  Narrow& operator-=(const Narrow& b) { return lanes -= b.lanes, *this; }
+};
+
+inline Narrow operator+(const Narrow& a, const Narrow& b) { return Narrow(a.lanes + b.lanes); }
+inline Narrow operator-(const Narrow& a, const Narrow& b) { return Narrow(a.lanes - b.lanes); }
+inline Narrow operator*(const Narrow& a, const Narrow& b) { return Narrow(a.lanes * b.lanes); }
+inline Narrow operator/(const Narrow& a, const Narrow& b) { return Narrow(a.lanes / b.lanes); }
+
+inline Narrow sqrt(Narrow x) {
+  for (int lane = 0; lane < Wide::size; ++lane) x.lanes[lane] = std::sqrt(x.lanes[lane]);
+  return x;
+}
+
+}  // namespace softgrain
