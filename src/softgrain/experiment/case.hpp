@@ -55,7 +55,7 @@ struct Case {
     int min_sweeps = 10;
     int max_sweeps = 50;
     double tolerance = 1e-5;  ///< mean penetration gained in a step over the mean primary diameter
-    double relaxation = 1.3;  ///< omega
+    double relaxation = 1.4;  ///< omega
   } solver;
 
   struct Loading {
