@@ -15,16 +15,17 @@ using WideMat = Mat<2, Wide>;
 struct CellState {
   CellState(const GrainBatch& batch, int cell_index)
       : cell(batch.topology->grid.cell[cell_index]), points(&batch.topology->points[4 * cell_index]) {
+    // F = sum_a x_a (x) dN_a/dX = sum_(a > 0) (x_a - x_0) (x) dN_a/dX, as sum_a N_a = 1
     const Wide inverse_radius = 1.0 / batch.radius;
+    std::array<Vec<2, Wide>, 4> edge;
+    for (int a = 1; a < 4; ++a)
+      edge[a] = inverse_radius * (batch.position[cell[a]] - batch.position[cell[0]]);
     for (int p = 0; p < 4; ++p) {
-      for (int a = 0; a < 4; ++a) {
-        const Vec<2, Wide>& x = batch.position[cell[a]];
+      for (int a = 1; a < 4; ++a) {
         const Vec<2>& g = points[p].gradient[a];
-        // F = sum_a x_a (x) dN_a/dX
         for (int i = 0; i < 2; ++i)
-          for (int j = 0; j < 2; ++j) F[p](i, j) += x[i] * g[j];
+          for (int j = 0; j < 2; ++j) F[p](i, j) += edge[a][i] * g[j];
       }
-      F[p] = inverse_radius * F[p];
     }
   }
   /// Mean J of the cell, weighted by volume.
@@ -55,37 +56,48 @@ class InvertedLanes {
   Wide some_ = 1.0;  // a J that is not positive, else 1
 };
 
+/// Forces on the nodes of a cell; that on the first balances the others.
+class CellForce {
+ public:
+  /// f_a += V P . dN_a/dX
+  void add(const WideMat& P, const MaterialPoint& point) {
+    const WideMat VP = Wide(point.volume) * P;
+    for (int a = 1; a < 4; ++a) {
+      const Vec<2>& g = point.gradient[a];
+      for (int i = 0; i < 2; ++i) node_[a][i] += VP(i, 0) * g[0] + VP(i, 1) * g[1];
+    }
+  }
+  /// With R^2 of the volume and 1/R of the gradient.
+  void add_to(WideVectors& force, const std::array<int, 4>& cell, Wide radius) {
+    for (int a = 1; a < 4; ++a) {
+      node_[a] *= radius;
+      node_[0] -= node_[a];
+    }
+    for (int a = 0; a < 4; ++a) force[cell[a]] += node_[a];
+  }
+
+ private:
+  std::array<Vec<2, Wide>, 4> node_;
+};
+
 template <class Law>
-void cell_force(const Law& law, const CellState& state, Wide radius, WideVectors& force,
-                InvertedLanes& inverted) {
+void cell_force(const Law& law, const CellState& state, CellForce& force, InvertedLanes& inverted) {
   for (int p = 0; p < 4; ++p) {
     if (Law::needs_positive_J) inverted.note(determinant(state.F[p]));
-    const WideMat P = law.stress(state.F[p]);
-    const Wide weight = state.points[p].volume * radius;  // V R^2 / R
-    for (int a = 0; a < 4; ++a) {
-      const Vec<2>& g = state.points[p].gradient[a];
-      for (int i = 0; i < 2; ++i) force[state.cell[a]][i] += weight * (P(i, 0) * g[0] + P(i, 1) * g[1]);
-    }
+    force.add(law.stress(state.F[p]), state.points[p]);
   }
 }
 
 /// With P = dpsi_dev/dF + U'(mean J) cof F.
 template <class Law>
-void cell_force_mean_dilatation(const Law& law, const CellState& state, Wide radius, WideVectors& force,
+void cell_force_mean_dilatation(const Law& law, const CellState& state, CellForce& force,
                                 InvertedLanes& inverted) {
   double volume = 0;
   const Wide J = state.mean_dilatation(volume);
   const Wide pressure = law.volume().derivative(J);
-  cell_force(law.deviatoric(), state, radius, force, inverted);
+  cell_force(law.deviatoric(), state, force, inverted);
   inverted.note(J);
-  for (int p = 0; p < 4; ++p) {
-    const WideMat cof = cofactor(state.F[p]);
-    const Wide weight = state.points[p].volume * radius * pressure;
-    for (int a = 0; a < 4; ++a) {
-      const Vec<2>& g = state.points[p].gradient[a];
-      for (int i = 0; i < 2; ++i) force[state.cell[a]][i] += weight * (cof(i, 0) * g[0] + cof(i, 1) * g[1]);
-    }
-  }
+  for (int p = 0; p < 4; ++p) force.add(pressure * cofactor(state.F[p]), state.points[p]);
 }
 
 /// The ten blocks K_ab, b <= a, of a cell.
@@ -154,13 +166,13 @@ unsigned internal_force(const SoftGrains& grains, const GrainBatch& batch, WideV
         InvertedLanes inverted;
         for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell) {
           const CellState state(batch, cell);
+          CellForce on_nodes;
+          bool done = false;
           if constexpr (SplitLaw<Law, 2>) {
-            if (grains.mean_dilatation) {
-              cell_force_mean_dilatation(law, state, batch.radius, force, inverted);
-              continue;
-            }
+            if ((done = grains.mean_dilatation)) cell_force_mean_dilatation(law, state, on_nodes, inverted);
           }
-          cell_force(law, state, batch.radius, force, inverted);
+          if (!done) cell_force(law, state, on_nodes, inverted);
+          on_nodes.add_to(force, state.cell, batch.radius);
         }
         return inverted.lanes();
       },

@@ -178,7 +178,8 @@ TEST_CASE("factors in single precision cost no iterations and no accuracy up to 
     CHECK(a.converged);
     CHECK(a.rejected == b.rejected);
     CHECK(a.iterations <= b.iterations + 2);
-    CHECK(single.wall_impulse(1)[1] == doctest::Approx(full.wall_impulse(1)[1]).epsilon(1e-5));
+    // both to 1e-5 of the radius, where the plates have moved by 0.01 to 0.2 of it
+    CHECK(single.wall_impulse(1)[1] == doctest::Approx(full.wall_impulse(1)[1]).epsilon(1e-3));
   }
   CHECK(single.wall_impulse(1)[1] != full.wall_impulse(1)[1]);
 }
