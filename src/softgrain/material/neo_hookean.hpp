@@ -24,8 +24,15 @@ struct NeoHookean {
   /// First Piola-Kirchhoff stress P = dpsi/dF [Pa] = mu F + h cof F, h = U'(J) - mu / J.
   template <int Dim, class T>
   [[gnu::always_inline]] Mat<Dim, T> stress(const Mat<Dim, T>& F) const {
-    const T J = determinant(F);
-    const T h = volumetric.derivative(J) - mu * (1.0 / J);
+    return stress(F, cofactor_factor(determinant(F)));
+  }
+  /// h(J) [Pa], and P with it: for several points at once.
+  template <class T>
+  [[gnu::always_inline]] T cofactor_factor(const T& J) const {
+    return volumetric.derivative(J) - mu * (1.0 / J);
+  }
+  template <int Dim, class T>
+  [[gnu::always_inline]] Mat<Dim, T> stress(const Mat<Dim, T>& F, const T& h) const {
     const Mat<Dim, T> cof = cofactor(F);
     Mat<Dim, T> P;
     for (std::size_t k = 0; k < P.c.size(); ++k) P.c[k] = mu * F.c[k] + h * cof.c[k];
