@@ -97,12 +97,14 @@ RigidParticles<2> dense_packing(const PackingSize& size) {
   };
   std::vector<std::pair<Vec<2>, double>> disks;
   for (int row = 0; row < size.rows; ++row)
-    for (int column = 0; column < size.columns; ++column)
+    for (int column = 0; column < size.columns; ++column) {
       for (int i = 0; i < box.size(); ++i)
         disks.push_back(
             {{reflected(box.position[i][0], edge[0], column), reflected(box.position[i][1], edge[1], row)},
              box.radius[i]});
-  std::ranges::stable_sort(disks, {}, [](const auto& disk) { return morton(disk.first); });
+      std::stable_sort(disks.end() - box.size(), disks.end(),
+                       [](const auto& a, const auto& b) { return morton(a.first) < morton(b.first); });
+    }
   std::vector<Vec<2>> position;
   std::vector<double> radius;
   for (const auto& [x, r] : disks) position.push_back(x), radius.push_back(r);
@@ -116,6 +118,7 @@ int ContactProblem::active() const {
 ContactProblem collapse_problem(const PackingSize& size, double mu) {
   constexpr double compression = 1e-2;  // per step: closes the gaps that the packing has left
   ContactProblem problem{.particles = dense_packing(size), .contacts = {}, .offset = {}};
+  for (int i = 0; i < size.disks(); ++i) problem.particles.grain[i] = i / size.disks_per_box;
   NeighbourReference<2> reference{.skin = skin, .position = {}, .wall_point = {}};
   set_reference(reference, problem.particles);
   problem.contacts = candidate_contacts(problem.particles, reference, [=](int, int) { return mu; }, {});

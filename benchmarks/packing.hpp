@@ -17,7 +17,8 @@ struct PackingSize {
 inline constexpr PackingSize small_packing{1, 1, 1750}, middle_packing{2, 2, 1500}, large_packing{8, 5, 1500};
 
 /// A jammed, frictionless random packing between four walls: mean diameter 1, diameters uniform with
-/// largest/smallest = 1.625, a mass of diameter^2, sorted in space (Morton order). At rest.
+/// largest/smallest = 1.625, a mass of diameter^2, box by box, in each sorted in space (Morton order). At
+/// rest.
 RigidParticles<2> dense_packing(const PackingSize& size);
 
 /// One step's contact problem, frozen, in units of the mean diameter and the step.
@@ -31,7 +32,8 @@ struct ContactProblem {
 };
 
 /// The disks of a dense packing move towards its centre and collide in the step, with friction mu at every
-/// contact: v_free is a uniform compression with 20 % noise, p = 0.
+/// contact: v_free is a uniform compression with 20 % noise, p = 0. Each box is a grain, so that contacts are
+/// swept box by box.
 ContactProblem collapse_problem(const PackingSize& size, double mu);
 
 /// Relaxes a problem by sweeps, so that p is what a step starts from (warm start).

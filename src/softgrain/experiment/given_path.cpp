@@ -7,7 +7,7 @@
 
 namespace softgrain {
 
-GivenPath::GivenPath(std::unique_ptr<PlatePath> own, PlateMotion motion, double dt)
+GivenPath::GivenPath(std::shared_ptr<const PlatePath> own, PlateMotion motion, double dt)
     : own_(std::move(own)), motion_(std::move(motion)), dt_(dt) {
   require(std::isfinite(motion_.duration) && motion_.duration > 0,
           "the duration of a motion must be > 0, got {} s", motion_.duration);

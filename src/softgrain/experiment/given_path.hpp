@@ -10,7 +10,7 @@ namespace softgrain {
 class GivenPath final : public PlatePath {
  public:
   /// Raises UsageError for a duration that is not positive.
-  GivenPath(std::unique_ptr<PlatePath> own, PlateMotion motion, double dt);
+  GivenPath(std::shared_ptr<const PlatePath> own, PlateMotion motion, double dt);
 
   std::int64_t steps() const override { return steps_; }
   /// Asks the motion once a step. Raises UsageError for an answer that is not finite.
@@ -22,7 +22,7 @@ class GivenPath final : public PlatePath {
   }
 
  private:
-  std::unique_ptr<PlatePath> own_;
+  std::shared_ptr<const PlatePath> own_;
   PlateMotion motion_;
   double dt_ = 0;
   std::int64_t steps_ = 0;

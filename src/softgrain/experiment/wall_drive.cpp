@@ -24,7 +24,7 @@ WallDrive::WallDrive(const Case::Loading& loading, std::unique_ptr<PlatePath> pa
 }
 
 void WallDrive::follow(PlateMotion motion) {
-  path_ = std::make_unique<GivenPath>(std::move(path_), std::move(motion), dt_);
+  path_ = std::make_shared<GivenPath>(std::move(path_), std::move(motion), dt_);
 }
 
 int WallDrive::leg(std::int64_t step) const {

@@ -59,7 +59,7 @@ class WallDrive {
   double plate_velocity(std::int64_t step) const;
 
   Case::Loading loading_;
-  std::unique_ptr<PlatePath> path_;
+  std::shared_ptr<const PlatePath> path_;  // shared by copies
   double dt_ = 0;
   std::int64_t hold_steps_ = 0;
 };
