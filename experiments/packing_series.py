@@ -1,4 +1,4 @@
-"""What the series of both packings have in common: runs with one setting varied, their means over windows of packing
+"""What the series of runs have in common: one setting varied, their means over windows of packing
 fraction and over seeds, a CSV file and a picture of it. Needs only Python's standard library, and Matplotlib to draw."""
 import csv
 import json

@@ -12,14 +12,17 @@ Needs only Python's standard library. Runs that are already finished in DIR are 
 """
 import argparse
 import csv
-import json
 import math
 import pathlib
 import re
 import statistics
 import subprocess
+import sys
 
 HERE = pathlib.Path(__file__).parent
+sys.path.insert(0, str(HERE.parent))
+import packing_series
+
 RESULTS = HERE / "results"
 RADIUS, YOUNG, POISSON = 5e-3, 10e6, 0.45
 PLANE_STRAIN = YOUNG / (1 - POISSON ** 2)  # E*
@@ -30,18 +33,7 @@ STRAINS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4)
 
 
 def run(program, directory, settings):
-    """Runs the case with the settings, unless it is done, and returns its rows and its record. A law may give up."""
-    info = directory / "run.json"
-    if not (info.exists() and json.loads(info.read_text())["state"] in ("done", "failed")):
-        command = [program, "run", str(HERE / "case.toml"), "-o", str(directory), "--force", "--quiet", "-j", "1",
-                   "--set", "output.snapshots=1", "--set", "output.vtk=false", "--set", "output.report=false"]
-        for key, value in settings.items():
-            command += ["--set", f"{key}={value}"]
-        if subprocess.run(command, stdout=subprocess.DEVNULL).returncode not in (0, 3):
-            raise SystemExit(f"{directory}: the run failed")
-    with open(directory / "series.csv", newline="") as file:
-        rows = [{key.split("[")[0]: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
-    return rows, json.loads(info.read_text())
+    return packing_series.run(program, HERE / "case.toml", directory, {"output.snapshots": 1, **settings})
 
 
 def curve(rows):
