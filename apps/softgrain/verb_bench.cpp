@@ -1,9 +1,7 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <array>
-#include <ctime>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -13,6 +11,7 @@
 #include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/simulation.hpp"
 #include "softgrain/io/case_file.hpp"
+#include "softgrain/io/run_json.hpp"
 #include "verbs.hpp"
 
 namespace softgrain {
@@ -42,8 +41,6 @@ struct Measured {
   std::int64_t steps = 0;
   double sweeps = 0;  ///< of NLGS in a step, mean
 };
-
-double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 Measured measured(const BenchCase& bench, int rounds) {
   std::vector<std::string> sets{"experiment.loading=compaction", "sample.grains=12",
