@@ -33,7 +33,7 @@ void add_reproduce_verb(CLI::App& app) {
       ->check(CLI::IsMember({"fig1", "fig2", "fig3", "fig4", "all"}).description(""))
       ->capture_default_str();
   verb->add_option("--scale", arguments->scale,
-                   "quick: 20 grains, three seeds, a minute; paper: its full size, half an hour")
+                   "quick: 20 grains, three seeds, a minute; paper: its full size, ten minutes")
       ->check(CLI::IsMember({"quick", "paper"}).description(""))
       ->capture_default_str();
   verb->add_option("-o,--output", arguments->output, "where runs, figures and verdicts go")

