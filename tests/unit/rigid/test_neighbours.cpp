@@ -35,6 +35,13 @@ PairSet pairs_within(const RigidParticles<Dim>& bodies, double gap) {
   return pairs;
 }
 
+template <int Dim>
+RigidParticles<Dim> six_grains() {
+  auto bodies = test::random_bodies<Dim>(Dim == 2 ? 12 : 6, 4);
+  for (int i = 0; i < bodies.size(); ++i) bodies.grain[i] = i / (bodies.size() / 6);
+  return bodies;
+}
+
 }  // namespace
 
 TEST_CASE_TEMPLATE("candidate contacts are the pairs and walls closer than the skin", Dimension, Plane,
@@ -55,9 +62,8 @@ TEST_CASE_TEMPLATE("candidate contacts are the pairs and walls closer than the s
 TEST_CASE_TEMPLATE("contacts inside grains come grain by grain, those between them and with walls last",
                    Dimension, Plane, Space) {
   constexpr int Dim = Dimension::value;
-  auto bodies = test::random_bodies<Dim>(Dim == 2 ? 12 : 6, 4);
-  const int n = bodies.size(), size = n / 6;
-  for (int i = 0; i < n; ++i) bodies.grain[i] = i / size;
+  const auto bodies = six_grains<Dim>();
+  const int n = bodies.size();
   NeighbourReference<Dim> reference{.skin = 0.2, .position = {}, .wall_point = {}};
   set_reference(reference, bodies);
   const auto contacts = candidate_contacts(bodies, reference, test::mixed_friction, {});
@@ -221,9 +227,8 @@ TEST_CASE("only the lists that need it are made again, each from its own referen
 TEST_CASE_TEMPLATE("lists that are kept hold the same contacts, impulses and order as when made again",
                    Dimension, Plane, Space) {
   constexpr int Dim = Dimension::value;
-  auto bodies = test::random_bodies<Dim>(Dim == 2 ? 12 : 6, 4);
-  const int n = bodies.size(), size = n / 6;
-  for (int i = 0; i < n; ++i) bodies.grain[i] = i / size;
+  auto bodies = six_grains<Dim>();
+  const int size = bodies.size() / 6;
   NeighbourReference<Dim> reference{.skin = 0.2, .position = {}, .wall_point = {}};
   set_reference(reference, bodies);
   auto old = candidate_contacts(bodies, reference, test::mixed_friction, {});
