@@ -48,6 +48,12 @@ double seconds_of(const std::function<void()>& work) {
   return cpu_seconds() - start;
 }
 
+std::function<void()> repeated(int times, std::function<void()> part) {
+  return [times, part = std::move(part)] {
+    for (int k = 0; k < times; ++k) part();
+  };
+}
+
 std::vector<double> fastest(std::initializer_list<std::function<void()>> work) {
   std::vector<double> best(work.size(), std::numeric_limits<double>::infinity());
   const double start = cpu_seconds();

@@ -12,6 +12,9 @@ double cpu_seconds();
 /// CPU time of one call of `work` [s].
 double seconds_of(const std::function<void()>& work);
 
+/// A piece of work that does `part` so many times.
+std::function<void()> repeated(int times, std::function<void()> part);
+
 /// Smallest CPU time [s] of each piece of work. A round runs every piece once, so that a slow moment of the
 /// machine meets all of them. Rounds go on, 5 at least, until in five of them no minimum has fallen by more
 /// than 1 %, or 20 s of CPU time are spent.

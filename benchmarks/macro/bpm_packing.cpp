@@ -42,15 +42,10 @@ void measure_parts(const BpmCompaction& simulation, const Case& c, Results& resu
   std::vector<double> offset;
   signorini_offset<2>(state.contacts, state.particles.velocity, {}, c.time.step, offset);
   RigidContactSystem<2> system(state.particles, state.contacts, offset);
-  const auto repeat = [](auto part) {
-    return [part] {
-      for (int k = 0; k < calls; ++k) part();
-    };
-  };
   const std::vector<double> seconds = fastest({
-      repeat([&] { system.sweep(state.contacts.impulse, state.contacts.friction, {}); }),
-      repeat([&] { detect_contacts(state.particles, state.contacts); }),
-      repeat([&] { attraction.add_forces(state.particles, force); }),
+      repeated(calls, [&] { system.sweep(state.contacts.impulse, state.contacts.friction, {}); }),
+      repeated(calls, [&] { detect_contacts(state.particles, state.contacts); }),
+      repeated(calls, [&] { attraction.add_forces(state.particles, force); }),
   });
   const char* names[] = {"one sweep", "detection", "attraction"};
   for (std::size_t k = 0; k < seconds.size(); ++k) {

@@ -54,27 +54,24 @@ StepParts time_parts(const BpmCompression& simulation, const Case& paper, const 
   AttractionForces listed({.F0 = paper.bpm.attraction, .gamma = paper.bpm.exponent});
 
   int stale = 0;
-  const auto repeat = [](auto part) {
-    return [part] {
-      for (int k = 0; k < calls; ++k) part();
-    };
-  };
   const auto seconds = fastest({
       [&] {
         BpmCompression copy = simulation;
         for (int k = 0; k < steps_measured; ++k) copy.step();
       },
-      repeat([&] { attraction.add_forces(particles, force); }),
-      repeat([&] { detect_contacts(particles, contacts); }),
-      repeat([&] { signorini_offset<2>(contacts, particles.velocity, {}, paper.time.step, offset); }),
-      repeat([&] { system.sweep(contacts.impulse, contacts.friction, options); }),
-      repeat([&] { stale += needs_rebuild(state.reference, particles) ? 1 : 0; }),
-      repeat([&] { pushed_system.apply_impulses(contacts.impulse); }),
-      repeat([&] {
-        set_reference(rebuilt.reference, rebuilt.particles);
-        rebuilt.rebuild_contacts();
-        listed.update(rebuilt.particles, rebuilt.reference);
-      }),
+      repeated(calls, [&] { attraction.add_forces(particles, force); }),
+      repeated(calls, [&] { detect_contacts(particles, contacts); }),
+      repeated(calls,
+               [&] { signorini_offset<2>(contacts, particles.velocity, {}, paper.time.step, offset); }),
+      repeated(calls, [&] { system.sweep(contacts.impulse, contacts.friction, options); }),
+      repeated(calls, [&] { stale += needs_rebuild(state.reference, particles) ? 1 : 0; }),
+      repeated(calls, [&] { pushed_system.apply_impulses(contacts.impulse); }),
+      repeated(calls,
+               [&] {
+                 set_reference(rebuilt.reference, rebuilt.particles);
+                 rebuilt.rebuild_contacts();
+                 listed.update(rebuilt.particles, rebuilt.reference);
+               }),
   });
   return {.whole = seconds[0] / steps_measured,
           .attraction = seconds[1] / calls,

@@ -80,7 +80,7 @@ class Theirs {
   }
 
   void step(int velocity_iterations) {
-    if (needs_rebuild(reference_, particles_)) set_reference(reference_, particles_);
+    renew_stale_lists(reference_, particles_);
     attraction_.update(particles_, reference_);
     force_.assign(bodies_.size(), {});
     attraction_.add_forces(particles_, force_);

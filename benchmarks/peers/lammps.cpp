@@ -190,8 +190,7 @@ class Lammps {
   static void add_load(void* self, std::int64_t, int count, int* id, double** x, double** force) {
     auto& lammps = *static_cast<Lammps*>(self);
     lammps.read_positions(count, id, x);
-    if (needs_rebuild(lammps.reference_, lammps.particles_))
-      set_reference(lammps.reference_, lammps.particles_);
+    renew_stale_lists(lammps.reference_, lammps.particles_);
     lammps.force_.assign(lammps.force_.size(), {});
     lammps.load_.add(lammps.particles_, lammps.reference_, lammps.force_);
     for (int i = 0; i < count; ++i) std::ranges::copy(lammps.force_[id[i] - 1].c, force[i]);
