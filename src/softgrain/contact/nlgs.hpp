@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -42,6 +43,21 @@ Violation nlgs_sweep(System& system, std::span<Vec<Dim>> impulse, std::span<cons
   return violation;
 }
 
+/// Sweeps until the law holds everywhere to the tolerance, or max_sweeps. `sweep(measured)` is one sweep; it
+/// returns its violation [m/s] only if `measured`, as every sweep that may be the last is.
+template <class Sweep>
+SolverReport repeat_sweeps(const Sweep& sweep, double velocity_scale, const SolverOptions& options) {
+  SolverReport report;
+  const int first_look = std::min(options.min_sweeps, options.max_sweeps);
+  for (int k = 1; k <= options.max_sweeps; ++k) {
+    const Violation violation = sweep(k >= first_look);
+    if (k < first_look) continue;
+    report = report_of(violation, k, velocity_scale, options);
+    if (report.converged || !std::isfinite(report.residual_mean)) break;
+  }
+  return report;
+}
+
 /// Nonlinear Gauss-Seidel (Moreau, Jean): sweeps over the contacts in the order given until the law holds
 /// everywhere to the tolerance, or max_sweeps. `impulse` [N s] is the start (warm start) and becomes the
 /// solution; the velocities of `system` must already include it, and include the solution on return.
@@ -52,18 +68,13 @@ SolverReport solve_nlgs(System& system, std::span<Vec<Dim>> impulse, std::span<c
                         const SolverOptions& options) {
   const double scale =
       options.velocity_scale > 0 ? options.velocity_scale : typical_velocity<Dim>(system, impulse);
-  SolverReport report;
-  for (int sweep = 1; sweep <= options.max_sweeps; ++sweep) {
-    Violation violation;
+  const auto sweep = [&](bool /*measured*/) {
     if constexpr (HasOwnSweep<System, Dim>)
-      violation = system.sweep(impulse, friction, options);
+      return system.sweep(impulse, friction, options);
     else
-      violation = nlgs_sweep<Dim>(system, impulse, friction, options.relaxation);
-    report = report_of(violation, sweep, scale, options);
-    const bool broken = !std::isfinite(report.residual_mean);
-    if (broken || (report.converged && sweep >= options.min_sweeps)) break;
-  }
-  return report;
+      return nlgs_sweep<Dim>(system, impulse, friction, options.relaxation);
+  };
+  return repeat_sweeps(sweep, scale, options);
 }
 
 }  // namespace softgrain

@@ -25,6 +25,12 @@ Activation activation_of(const std::string& name) {
   return Activation::anticipated;
 }
 
+Precision precision_of(const std::string& name) {
+  if (name == "single") return Precision::single;
+  require(name == "double", "solver.precision must be 'single' or 'double', got '{}'", name);
+  return Precision::full;
+}
+
 }  // namespace
 
 RigidStepOptions rigid_step_options(const Case& c) {
@@ -34,7 +40,8 @@ RigidStepOptions rigid_step_options(const Case& c) {
                      .relaxation = c.solver.relaxation},
           .law = {.restitution = c.contact.restitution,
                   .push_out = c.contact.push_out,
-                  .activation = activation_of(c.contact.activation)}};
+                  .activation = activation_of(c.contact.activation)},
+          .precision = precision_of(c.solver.precision)};
 }
 
 BpmSimulation::BpmSimulation(const Case& the_case, std::unique_ptr<PlatePath> path,

@@ -54,8 +54,9 @@ struct Case {
   struct Solver {
     int min_sweeps = 10;
     int max_sweeps = 50;
-    double tolerance = 1e-5;  ///< mean penetration gained in a step over the mean primary diameter
-    double relaxation = 1.4;  ///< omega
+    double tolerance = 1e-5;           ///< mean penetration gained in a step over the mean primary diameter
+    double relaxation = 1.4;           ///< omega
+    std::string precision = "single";  ///< of the sweeps: single or double
   } solver;
 
   struct Loading {

@@ -86,6 +86,8 @@ std::vector<Key> all_keys() {
       KEY(solver.tolerance, "", positive(),
           "converged: mean penetration gained in a step over the mean primary diameter is below this"),
       KEY(solver.relaxation, "", between(0, 2), "over-relaxation omega of a sweep; 1 is plain Gauss-Seidel"),
+      KEY(solver.precision, "", one_of({"single", "double"}),
+          "of impulses and velocities within the sweeps of a bpm step; double for tolerances below 1e-11"),
 
       KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top plate; isotropic: of opposite walls towards each other, half by each"),
       KEY(loading.max_strain, "", between(0, 3),

@@ -39,8 +39,6 @@ class BlockPattern {
   std::vector<int> column_of_;          // of each block
 };
 
-enum class Precision { full, single };
-
 /// Cholesky factors A = L L^T of eight matrices of one pattern at once, one in each lane. Own code because no
 /// library factors batches in lanes: 2.7 times faster than CHOLMOD one by one (docs/decisions/0009). In
 /// single precision a factor takes half the memory and about half the time, and solutions have a relative

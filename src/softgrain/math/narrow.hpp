@@ -5,6 +5,8 @@
 
 namespace softgrain {
 
+enum class Precision { full, single };  ///< double, float
+
 /// Eight numbers in single precision: half the memory and half the work of Wide, for what is corrected later.
 struct Narrow {
   using Floats = float __attribute__((vector_size(32)));

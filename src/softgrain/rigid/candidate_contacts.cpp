@@ -105,116 +105,142 @@ ListedBlock listed(const std::vector<BodyPair>& pairs, const FrictionRule& rule,
   return {in_fours(smooth, n), in_fours(rough, n)};
 }
 
+/// Rows `batch` of the arrays of pairs and masses.
 template <int Dim>
-void append(const Sequence& sequence, const RigidParticles<Dim>& particles, const FrictionRule& rule,
-            RigidContacts<Dim>& contacts, ContactBatch& batch) {
-  batch.begin = contacts.size();
-  batch.fours_end = batch.begin + sequence.in_fours;
-  for (const BodyPair& pair : sequence.pairs) {
-    const double inverse_a = particles.inverse_mass[pair.a], inverse_b = particles.inverse_mass[pair.b];
-    contacts.body_a.push_back(pair.a);
-    contacts.body_b.push_back(pair.b);
-    contacts.inverse_mass_a.push_back(inverse_a);
-    contacts.inverse_mass_b.push_back(inverse_b);
-    contacts.inverse_delassus.push_back(1 / (inverse_a + inverse_b));
-    contacts.friction.push_back(rule(pair.a, pair.b));
+void write(const Sequence& sequence, const RigidParticles<Dim>& particles, const FrictionRule& rule,
+           const ContactBatch& batch, RigidContacts<Dim>& contacts) {
+  for (int c = batch.begin; c < batch.end; ++c) {
+    const auto [a, b] = sequence.pairs[c - batch.begin];
+    const double inverse_a = particles.inverse_mass[a], inverse_b = particles.inverse_mass[b];
+    contacts.body_a[c] = a;
+    contacts.body_b[c] = b;
+    contacts.inverse_mass_a[c] = inverse_a;
+    contacts.inverse_mass_b[c] = inverse_b;
+    contacts.inverse_delassus[c] = 1 / (inverse_a + inverse_b);
+    contacts.friction[c] = rule(a, b);
   }
-  batch.end = contacts.size();
 }
 
-/// The contacts of a list that was not made again, with their impulses.
+/// The rows of a list that was not made again, with their impulses.
 template <int Dim>
-ContactBlock take_over(const RigidContacts<Dim>& old, ContactBlock block, RigidContacts<Dim>& contacts) {
-  const int shift = contacts.size() - block.begin();
-  const auto append_rows = [&](auto array) {
-    const auto& from = old.*array;
-    (contacts.*array)
-        .insert((contacts.*array).end(), from.begin() + block.begin(), from.begin() + block.end());
+void copy(const RigidContacts<Dim>& old, const ContactBlock& from, int to, RigidContacts<Dim>& contacts) {
+  const auto copy_rows = [&](auto array) {
+    const auto& rows = old.*array;
+    std::copy(rows.begin() + from.begin(), rows.begin() + from.end(), (contacts.*array).begin() + to);
   };
   using Contacts = RigidContacts<Dim>;
-  append_rows(&Contacts::body_a), append_rows(&Contacts::body_b);
-  append_rows(&Contacts::inverse_mass_a), append_rows(&Contacts::inverse_mass_b);
-  append_rows(&Contacts::inverse_delassus), append_rows(&Contacts::friction);
-  append_rows(&Contacts::impulse);
+  copy_rows(&Contacts::body_a), copy_rows(&Contacts::body_b);
+  copy_rows(&Contacts::inverse_mass_a), copy_rows(&Contacts::inverse_mass_b);
+  copy_rows(&Contacts::inverse_delassus), copy_rows(&Contacts::friction);
+  copy_rows(&Contacts::impulse);
+}
+
+/// The block of a list whose contacts start at `begin`.
+ContactBlock at(int begin, ContactBlock block) {
+  const int shift = begin - block.begin();
   for (ContactBatch* batch : {&block.frictionless, &block.frictional})
     batch->begin += shift, batch->fours_end += shift, batch->end += shift;
   return block;
 }
+ContactBlock at(int begin, const ListedBlock& listed) {
+  const auto batch_of = [](const Sequence& sequence, int first) {
+    return ContactBatch{first, first + sequence.in_fours, first + static_cast<int>(sequence.pairs.size())};
+  };
+  ContactBlock block;
+  block.frictionless = batch_of(listed.frictionless, begin);
+  block.frictional = batch_of(listed.frictional, block.frictionless.end);
+  return block;
+}
 
-/// Old contacts that carry an impulse, by their body a.
+/// Contacts of an old block that carry an impulse, by their body a, one of `bodies`.
 template <int Dim>
 class CarriedImpulses {
  public:
-  CarriedImpulses(const RigidContacts<Dim>& old, int bodies) : old_(old), begin_(bodies + 1, 0) {
-    for (int c = 0; c < old.size(); ++c)
-      if (old.impulse[c][0] > 0) ++begin_[old.body_a[c] + 1];
+  CarriedImpulses(const RigidContacts<Dim>& old, const ContactBlock& block, const GrainRange& bodies)
+      : old_(old), first_(bodies.begin), begin_(bodies.end - bodies.begin + 1, 0) {
+    for (int c = block.begin(); c < block.end(); ++c)
+      if (old.impulse[c][0] > 0) ++begin_[old.body_a[c] - first_ + 1];
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     contact_.resize(begin_.back());
     std::vector<int> next = begin_;
-    for (int c = 0; c < old.size(); ++c)
-      if (old.impulse[c][0] > 0) contact_[next[old.body_a[c]]++] = c;
+    for (int c = block.begin(); c < block.end(); ++c)
+      if (old.impulse[c][0] > 0) contact_[next[old.body_a[c] - first_]++] = c;
   }
 
   /// Of the old contact of the same bodies, or 0.
   Vec<Dim> between(int a, int b) const {
-    for (int k = begin_[a]; k < begin_[a + 1]; ++k)
+    for (int k = begin_[a - first_]; k < begin_[a - first_ + 1]; ++k)
       if (old_.body_b[contact_[k]] == b) return old_.impulse[contact_[k]];
     return {};
   }
 
  private:
   const RigidContacts<Dim>& old_;
+  int first_;
   std::vector<int> begin_, contact_;
 };
+
+/// The pairs of a list, found anew.
+template <int Dim>
+ListedBlock make_list(const RigidParticles<Dim>& particles, const NeighbourReference<Dim>& reference,
+                      const FrictionRule& friction, int list) {
+  const int n = particles.size();
+  if (list == reference.between_list())
+    return listed(pairs_between(particles, reference), friction, {0, n}, n);
+  const GrainRange& grain = reference.grains[list];
+  const auto inside =
+      close_pairs(particles, reference.position, reference.skin, grain, [](int, int) { return false; });
+  return listed(inside, friction, grain, n);
+}
 
 }  // namespace
 
 template <int Dim>
 RigidContacts<Dim> candidate_contacts(const RigidParticles<Dim>& particles,
                                       const NeighbourReference<Dim>& reference, const FrictionRule& friction,
-                                      const RigidContacts<Dim>& old) {
-  const int n = particles.size(), grains = reference.between_list();
-  std::vector<const ContactBlock*> kept(grains + 1, nullptr);
-  for (const ContactBlock& block : old.blocks)
-    if (block.made == reference.made[block.list]) kept[block.list] = &block;
+                                      const RigidContacts<Dim>& old, RigidContacts<Dim> contacts) {
+  const int grains = reference.between_list();
+  std::vector<const ContactBlock*> before(grains + 1, nullptr);
+  for (const ContactBlock& block : old.blocks) before[block.list] = &block;
+  const auto is_kept = [&](int list) {
+    return before[list] != nullptr && before[list]->made == reference.made[list];
+  };
   std::vector<ListedBlock> made(grains + 1);
   parallel_for(grains + 1, [&](int k) {
     const int list = k == 0 ? grains : k - 1;  // the longest first
-    if (kept[list] != nullptr) return;
-    if (list == grains) {
-      made[list] = listed(pairs_between(particles, reference), friction, {0, n}, n);
-      return;
-    }
-    const GrainRange& grain = reference.grains[list];
-    const auto inside =
-        close_pairs(particles, reference.position, reference.skin, grain, [](int, int) { return false; });
-    made[list] = listed(inside, friction, grain, n);
+    if (!is_kept(list)) made[list] = make_list(particles, reference, friction, list);
   });
 
-  RigidContacts<Dim> contacts;
-  const CarriedImpulses<Dim> carried(old, n);
+  contacts.blocks.clear();
+  int size = 0;
   for (int list = 0; list <= grains; ++list) {
-    ContactBlock block;
+    ContactBlock block = is_kept(list) ? at(size, *before[list]) : at(size, made[list]);
     block.list = list;
     block.made = reference.made[list];
-    if (kept[list] != nullptr) {
-      block = take_over(old, *kept[list], contacts);
-    } else {
-      append(made[list].frictionless, particles, friction, contacts, block.frictionless);
-      append(made[list].frictional, particles, friction, contacts, block.frictional);
-      for (int c = block.begin(); c < block.end(); ++c)
-        contacts.impulse.push_back(carried.between(contacts.body_a[c], contacts.body_b[c]));
-    }
+    size = block.end();
     if (block.end() > block.begin() || list == grains) contacts.blocks.push_back(block);
   }
-  contacts.normal.resize(contacts.size());
-  contacts.gap.resize(contacts.size());
+  contacts.resize(size);
+  parallel_for(static_cast<int>(contacts.blocks.size()), [&](int k) {
+    const ContactBlock& block = contacts.blocks[k];
+    if (is_kept(block.list)) return copy(old, *before[block.list], block.begin(), contacts);
+    write(made[block.list].frictionless, particles, friction, block.frictionless, contacts);
+    write(made[block.list].frictional, particles, friction, block.frictional, contacts);
+    const GrainRange bodies =
+        block.list == grains ? GrainRange{0, particles.size()} : reference.grains[block.list];
+    const CarriedImpulses<Dim> carried(old, before[block.list] ? *before[block.list] : ContactBlock{},
+                                       bodies);
+    for (int c = block.begin(); c < block.end(); ++c)
+      contacts.impulse[c] = carried.between(contacts.body_a[c], contacts.body_b[c]);
+  });
   return contacts;
 }
 
 template RigidContacts<2> candidate_contacts<2>(const RigidParticles<2>&, const NeighbourReference<2>&,
-                                                const FrictionRule&, const RigidContacts<2>&);
+                                                const FrictionRule&, const RigidContacts<2>&,
+                                                RigidContacts<2>);
 template RigidContacts<3> candidate_contacts<3>(const RigidParticles<3>&, const NeighbourReference<3>&,
-                                                const FrictionRule&, const RigidContacts<3>&);
+                                                const FrictionRule&, const RigidContacts<3>&,
+                                                RigidContacts<3>);
 
 }  // namespace softgrain

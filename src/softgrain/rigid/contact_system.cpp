@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "softgrain/core/parallel.hpp"
 #include "softgrain/math/lanes.hpp"
+#include "softgrain/rigid/contact_blocks.hpp"
 #include "softgrain/rigid/lane_sweep.hpp"
 
 namespace softgrain {
@@ -35,17 +35,24 @@ template <int Dim>
 void signorini_offset(const RigidContacts<Dim>& contacts, std::span<const Vec<Dim>> velocity_start,
                       const ContactLaw& law, double dt, std::vector<double>& offset) {
   offset.resize(contacts.size());
+  signorini_offset<Dim>(contacts, velocity_start, law, dt, 0, offset);
+}
+
+template <int Dim>
+void signorini_offset(const RigidContacts<Dim>& contacts, std::span<const Vec<Dim>> velocity_start,
+                      const ContactLaw& law, double dt, int begin, std::span<double> offset) {
   const double open_rate = 1 / dt, closed_rate = law.push_out / dt;
-  for (int c = 0; c < contacts.size(); ++c)
-    offset[c] = contacts.gap[c] * (contacts.gap[c] > 0 ? open_rate : closed_rate);
+  const double* gap = contacts.gap.data() + begin;
+  for (std::size_t k = 0; k < offset.size(); ++k) offset[k] = gap[k] * (gap[k] > 0 ? open_rate : closed_rate);
   if (law.activation == Activation::anticipated) return;
-  for (int c = 0; c < contacts.size(); ++c) {
-    if (contacts.gap[c] > 0) {
-      offset[c] = inactive_offset;
+  for (std::size_t k = 0; k < offset.size(); ++k) {
+    if (gap[k] > 0) {
+      offset[k] = inactive_offset;
       continue;
     }
+    const int c = begin + static_cast<int>(k);
     const Vec<Dim> u = velocity_start[contacts.body_b[c]] - velocity_start[contacts.body_a[c]];
-    offset[c] += law.restitution * dot(contacts.normal[c], u);
+    offset[k] += law.restitution * dot(contacts.normal[c], u);
   }
 }
 
@@ -120,14 +127,6 @@ void RigidContactSystem<Dim>::relax_contact(int contact, Vec<Dim>& impulse, doub
 }
 
 template <int Dim>
-template <class Work>
-void RigidContactSystem<Dim>::for_each_block(const Work& work) const {
-  const int inside = static_cast<int>(contacts_.blocks.size()) - 1;
-  parallel_for(inside, work);
-  if (inside >= 0) work(inside);
-}
-
-template <int Dim>
 Violation RigidContactSystem<Dim>::sweep_block(int block, std::span<Vec<Dim>> impulse,
                                                std::span<const double> friction, double relaxation) {
   Violation violation;
@@ -149,14 +148,15 @@ template <int Dim>
 Violation RigidContactSystem<Dim>::sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
                                          const SolverOptions& options) {
   std::vector<Violation> found(contacts_.blocks.size());
-  for_each_block([&](int k) { found[k] = sweep_block(k, impulse, friction, options.relaxation); });
+  for_each_block(static_cast<int>(contacts_.blocks.size()),
+                 [&](int k) { found[k] = sweep_block(k, impulse, friction, options.relaxation); });
   Violation violation;
   for (const Violation& of_block : found) violation += of_block;
   return violation;
 }
 
 template <int Dim>
-void RigidContactSystem<Dim>::push_block(int block, std::span<const Vec<Dim>> impulse) {
+void RigidContactSystem<Dim>::apply_impulses(int block, std::span<const Vec<Dim>> impulse) {
   const ContactBlock& contacts = contacts_.blocks[block];
   int c = contacts.begin();
   if constexpr (Dim == 2) {
@@ -169,11 +169,15 @@ void RigidContactSystem<Dim>::push_block(int block, std::span<const Vec<Dim>> im
 
 template <int Dim>
 void RigidContactSystem<Dim>::apply_impulses(std::span<const Vec<Dim>> impulse) {
-  for_each_block([&](int k) { push_block(k, impulse); });
+  for_each_block(static_cast<int>(contacts_.blocks.size()), [&](int k) { apply_impulses(k, impulse); });
 }
 
 template void signorini_offset<2>(const RigidContacts<2>&, std::span<const Vec<2>>, const ContactLaw&, double,
+                                  int, std::span<double>);
+template void signorini_offset<2>(const RigidContacts<2>&, std::span<const Vec<2>>, const ContactLaw&, double,
                                   std::vector<double>&);
+template void signorini_offset<3>(const RigidContacts<3>&, std::span<const Vec<3>>, const ContactLaw&, double,
+                                  int, std::span<double>);
 template void signorini_offset<3>(const RigidContacts<3>&, std::span<const Vec<3>>, const ContactLaw&, double,
                                   std::vector<double>&);
 template Vec<2> relative_velocity<2>(const RigidContacts<2>&, int, std::span<const Vec<2>>,

@@ -29,10 +29,13 @@ std::array<Vec<3>, 2> tangents(const Vec<3>& n);
 
 /// q_n - u_n,free of each contact [m/s] (theory (6)-(8)): max(g, 0)/dt + beta min(g, 0)/dt, and e u_n^- where
 /// g <= 0; very large where the contact is inactive. `velocity_start` (bodies) [m/s] is that of the start of
-/// the step: u_n^- comes from it.
+/// the step: u_n^- comes from it. Or of the contacts from `begin` on, as many as `offset` holds.
 template <int Dim>
 void signorini_offset(const RigidContacts<Dim>& contacts, std::span<const Vec<Dim>> velocity_start,
                       const ContactLaw& law, double dt, std::vector<double>& offset);
+template <int Dim>
+void signorini_offset(const RigidContacts<Dim>& contacts, std::span<const Vec<Dim>> velocity_start,
+                      const ContactLaw& law, double dt, int begin, std::span<double> offset);
 
 /// u of a contact in its local axes [m/s], from the velocities and spins of the bodies.
 template <int Dim>
@@ -56,8 +59,9 @@ class RigidContactSystem {
   Vec<Dim> relative_velocity(int contact) const;
   void apply_impulse(int contact, const Vec<Dim>& dp);
 
-  /// v += M^-1 H p for all contacts (warm start).
+  /// v += M^-1 H p for all contacts (warm start), or for those of a block.
   void apply_impulses(std::span<const Vec<Dim>> impulse);
+  void apply_impulses(int block, std::span<const Vec<Dim>> impulse);
 
   /// One sweep of NLGS, grain by grain on all threads and then between grains, four contacts at once in the
   /// plane; the same law as the plain sweep, and the same bits on any number of threads.
@@ -71,10 +75,6 @@ class RigidContactSystem {
 
   Violation sweep_block(int block, std::span<Vec<Dim>> impulse, std::span<const double> friction,
                         double relaxation);
-  void push_block(int block, std::span<const Vec<Dim>> impulse);
-  /// work(block) for each: inside grains on all threads, then between them.
-  template <class Work>
-  void for_each_block(const Work& work) const;
 
   RigidParticles<Dim>& particles_;
   const RigidContacts<Dim>& contacts_;

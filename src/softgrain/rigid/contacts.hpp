@@ -39,6 +39,11 @@ struct RigidContacts {
   std::vector<ContactBlock> blocks;      ///< those inside grains share no particle; the last is between them
 
   int size() const { return static_cast<int>(body_a.size()); }
+  void resize(int size) {
+    body_a.resize(size), body_b.resize(size);
+    inverse_mass_a.resize(size), inverse_mass_b.resize(size), inverse_delassus.resize(size);
+    friction.resize(size), normal.resize(size), gap.resize(size), impulse.resize(size);
+  }
 };
 
 }  // namespace softgrain

@@ -130,7 +130,6 @@ void push_fours(RigidParticles<2>& particles, const RigidContacts<2>& contacts,
                 std::span<const Vec<2>> impulse, const ContactBatch& batch) {
   for (int c = batch.begin; c < batch.fours_end; c += lane_count) {
     const Lanes p_n = load_columns(&impulse[c]).x;
-    if (horizontal_max(p_n) == 0) continue;
     BodyLanes bodies(particles.velocity.data(), contacts, c);
     const LaneColumns n = load_columns(&contacts.normal[c]);
     bodies.apply({p_n * n.x, p_n * n.y}, load_lanes(&contacts.inverse_mass_a[c]),

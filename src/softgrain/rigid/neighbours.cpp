@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <set>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/cell_grid.hpp"
+#include "softgrain/math/wide.hpp"
 
 namespace softgrain {
 namespace {
@@ -129,6 +131,34 @@ void start_lists(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& 
   reference.made.assign(reference.grains.size() + 1, ++reference.generation);
 }
 
+template <int Dim>
+void detect_contact(const RigidParticles<Dim>& particles, int c, RigidContacts<Dim>& contacts) {
+  const int n = particles.size(), a = contacts.body_a[c], b = contacts.body_b[c];
+  if (b < n) {
+    const Vec<Dim> d = particles.position[b] - particles.position[a];
+    const double r = norm(d);
+    contacts.gap[c] = r - (particles.radius[a] + particles.radius[b]);  // g = |x_b - x_a| - (R_a + R_b)
+    contacts.normal[c] = (1 / r) * d;
+  } else {
+    const Wall<Dim>& wall = particles.walls[b - n];
+    contacts.gap[c] = dot(particles.position[a] - wall.point, wall.normal) - particles.radius[a];
+    contacts.normal[c] = -wall.normal;  // from the particle to the wall
+  }
+}
+
+/// Four contacts of particles from c on, in the same arithmetic.
+void detect_four(const RigidParticles<2>& particles, int c, RigidContacts<2>& contacts) {
+  const int *a = &contacts.body_a[c], *b = &contacts.body_b[c];
+  const LaneColumns x_a = gather_columns(particles.position.data(), a);
+  const LaneColumns x_b = gather_columns(particles.position.data(), b);
+  const double* R = particles.radius.data();
+  const Lanes touch = Lanes{R[a[0]], R[a[1]], R[a[2]], R[a[3]]} + Lanes{R[b[0]], R[b[1]], R[b[2]], R[b[3]]};
+  const Lanes d_x = x_b.x - x_a.x, d_y = x_b.y - x_a.y;
+  const Lanes r = sqrt(d_x * d_x + d_y * d_y), inverse_r = 1 / r, gap = r - touch;
+  std::memcpy(&contacts.gap[c], &gap, sizeof gap);
+  store_columns({inverse_r * d_x, inverse_r * d_y}, &contacts.normal[c]);
+}
+
 }  // namespace
 
 template <int Dim>
@@ -181,22 +211,24 @@ void restore_reference(NeighbourReference<Dim>& reference, const RigidParticles<
 
 template <int Dim>
 void detect_contacts(const RigidParticles<Dim>& particles, RigidContacts<Dim>& contacts) {
-  const int n = particles.size();
-  parallel_ranges(contacts.size(), [&](int begin, int end) {
-    for (int c = begin; c < end; ++c) {
-      const int a = contacts.body_a[c], b = contacts.body_b[c];
-      if (b < n) {
-        const Vec<Dim> d = particles.position[b] - particles.position[a];
-        const double r = norm(d);
-        contacts.gap[c] = r - (particles.radius[a] + particles.radius[b]);  // g = |x_b - x_a| - (R_a + R_b)
-        contacts.normal[c] = (1 / r) * d;
-      } else {
-        const Wall<Dim>& wall = particles.walls[b - n];
-        contacts.gap[c] = dot(particles.position[a] - wall.point, wall.normal) - particles.radius[a];
-        contacts.normal[c] = -wall.normal;  // from the particle to the wall
-      }
+  parallel_ranges(contacts.size(),
+                  [&](int begin, int end) { detect_contacts(particles, begin, end, contacts); });
+}
+
+template <int Dim>
+void detect_contacts(const RigidParticles<Dim>& particles, int begin, int end, RigidContacts<Dim>& contacts) {
+  const auto all_particles = [&](const int* b) {
+    return std::max({b[0], b[1], b[2], b[3]}) < particles.size();
+  };
+  int c = begin;
+  if constexpr (Dim == 2)
+    for (; c + lane_count <= end; c += lane_count) {
+      if (all_particles(&contacts.body_b[c]))
+        detect_four(particles, c, contacts);
+      else
+        for (int k = c; k < c + lane_count; ++k) detect_contact(particles, k, contacts);
     }
-  });
+  for (; c < end; ++c) detect_contact(particles, c, contacts);
 }
 
 template bool needs_rebuild<2>(const NeighbourReference<2>&, const RigidParticles<2>&);
@@ -210,6 +242,8 @@ template void set_reference<3>(NeighbourReference<3>&, const RigidParticles<3>&)
 template void restore_reference<3>(NeighbourReference<3>&, const RigidParticles<3>&, std::vector<Vec<3>>,
                                    std::vector<Vec<3>>, std::vector<Vec<3>>);
 template void detect_contacts<2>(const RigidParticles<2>&, RigidContacts<2>&);
+template void detect_contacts<2>(const RigidParticles<2>&, int, int, RigidContacts<2>&);
 template void detect_contacts<3>(const RigidParticles<3>&, RigidContacts<3>&);
+template void detect_contacts<3>(const RigidParticles<3>&, int, int, RigidContacts<3>&);
 
 }  // namespace softgrain

@@ -62,14 +62,17 @@ void restore_reference(NeighbourReference<Dim>& reference, const RigidParticles<
 /// All candidate contacts with gap < skin at the reference: a block for the inside of each grain that has
 /// any, then the block of those between grains and with walls. Blocks of `old`, made from this reference, are
 /// taken over where their list has not been made again; else impulses are carried over by (a, b). The order
-/// depends on the reference alone.
+/// depends on the reference alone. The memory of `room` is used again.
 template <int Dim>
 RigidContacts<Dim> candidate_contacts(const RigidParticles<Dim>& particles,
                                       const NeighbourReference<Dim>& reference, const FrictionRule& friction,
-                                      const RigidContacts<Dim>& old);
+                                      const RigidContacts<Dim>& old, RigidContacts<Dim> room = {});
 
-/// Gaps and normals at the present positions, in place. A pair of coincident centres raises NumericalError.
+/// Gaps and normals at the present positions, in place: of all contacts, or of begin .. end - 1. Those of
+/// coincident centres are not finite.
 template <int Dim>
 void detect_contacts(const RigidParticles<Dim>& particles, RigidContacts<Dim>& contacts);
+template <int Dim>
+void detect_contacts(const RigidParticles<Dim>& particles, int begin, int end, RigidContacts<Dim>& contacts);
 
 }  // namespace softgrain

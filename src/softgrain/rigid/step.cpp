@@ -3,29 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "softgrain/contact/nlgs.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
+#include "softgrain/rigid/contact_blocks.hpp"
 
 namespace softgrain {
-namespace {
-
-/// Of the contacts that carry impulse [m].
-struct Overlaps {
-  int contacts = 0;
-  double sum = 0, deepest = 0;
-
-  Overlaps& operator+=(const Overlaps& more) {
-    contacts += more.contacts;
-    sum += more.sum;
-    deepest = std::max(deepest, more.deepest);
-    return *this;
-  }
-};
-
-}  // namespace
-
 template <int Dim>
 RigidDynamics<Dim>::RigidDynamics(RigidParticles<Dim> bodies, FrictionRule friction,
                                   RigidStepOptions step_options, double skin)
@@ -48,25 +33,22 @@ RigidDynamics<Dim>::RigidDynamics(RigidParticles<Dim> bodies, FrictionRule frict
 template <int Dim>
 StepReport RigidDynamics<Dim>::step(const ForceField<Dim>& field, double dt) {
   drift(particles, dt / 2);  // x_m = x + dt/2 v
-  update_contacts();         // gaps and frames at x_m
+  if (renew_stale_lists(reference, particles)) rebuild_contacts();
   velocity_start_ = particles.velocity;
   spin_start_ = particles.spin;
-  kick(field, dt);                        // v_free = v + dt M^-1 F(x_m)
-  const SolverReport solver = solve(dt);  // v+ = v_free + M^-1 H p,  0 <= u_n + q_n _|_ p_n >= 0
+  kick(field, dt);  // v_free = v + dt M^-1 F(x_m)
+  const SolverReport solver =
+      solve(dt);  // gaps and frames at x_m; v+ = v_free + M^-1 H p,  0 <= u_n + q_n _|_ p_n >= 0
   account_work(dt);
   drift(particles, dt / 2);  // x = x_m + dt/2 v+
   return report(solver);
 }
 
 template <int Dim>
-void RigidDynamics<Dim>::update_contacts() {
-  if (renew_stale_lists(reference, particles)) rebuild_contacts();
-  detect_contacts(particles, contacts);
-}
-
-template <int Dim>
 void RigidDynamics<Dim>::rebuild_contacts() {
-  contacts = candidate_contacts(particles, reference, friction_, contacts);
+  RigidContacts<Dim> made =
+      candidate_contacts(particles, reference, friction_, contacts, std::move(replaced_));
+  replaced_ = std::exchange(contacts, std::move(made));
 }
 
 template <int Dim>
@@ -78,18 +60,69 @@ void RigidDynamics<Dim>::kick(const ForceField<Dim>& field, double dt) {
   });
 }
 
+/// Gaps, frames, offsets and warm start of the contacts begin .. end - 1.
+template <int Dim>
+void RigidDynamics<Dim>::prepare(int begin, int end, double dt) {
+  detect_contacts(particles, begin, end, contacts);
+  signorini_offset<Dim>(contacts, velocity_start_, options.law, dt, begin,
+                        std::span(offset_).subspan(begin, end - begin));
+  if (options.law.activation == Activation::closed_at_mid_step)
+    for (int c = begin; c < end; ++c)
+      if (contacts.gap[c] > 0) contacts.impulse[c] = {};
+}
+
+/// Four contacts at once, without branches.
+template <int Dim>
+Overlaps RigidDynamics<Dim>::overlaps_of(const ContactBlock& block) const {
+  const Vec<Dim>* p = contacts.impulse.data();
+  const double* gap = contacts.gap.data();
+  const auto overlap = [&](int c) { return p[c][0] > 0 ? std::max(0.0, -gap[c]) : 0; };
+  Lanes carrying = splat(0), sum = splat(0), deepest = splat(0);
+  int c = block.begin();
+  for (; c + lane_count <= block.end(); c += lane_count) {
+    const auto carries = Lanes{p[c][0], p[c + 1][0], p[c + 2][0], p[c + 3][0]} > 0;
+    const Lanes depth = carries ? max(-load_lanes(gap + c), splat(0)) : splat(0);
+    carrying += carries ? splat(1) : splat(0);
+    sum += depth;
+    deepest = max(deepest, depth);
+  }
+  Overlaps overlaps{static_cast<int>(horizontal_sum(carrying)), horizontal_sum(sum), horizontal_max(deepest)};
+  for (; c < block.end(); ++c) overlaps += {p[c][0] > 0 ? 1 : 0, overlap(c), overlap(c)};
+  return overlaps;
+}
+
 template <int Dim>
 SolverReport RigidDynamics<Dim>::solve(double dt) {
-  signorini_offset<Dim>(contacts, velocity_start_, options.law, dt, offset_);
-  if (options.law.activation == Activation::closed_at_mid_step) {
-    for (int c = 0; c < contacts.size(); ++c)
-      if (contacts.gap[c] > 0) contacts.impulse[c] = {};
-  }
-  RigidContactSystem<Dim> system(particles, contacts, offset_);
-  system.apply_impulses(contacts.impulse);
   SolverOptions solver = options.solver;
   if (solver.velocity_scale == 0) solver.velocity_scale = 2 * mean_radius_ / dt;
-  return solve_nlgs<Dim>(system, contacts.impulse, contacts.friction, solver);
+  const int blocks = static_cast<int>(contacts.blocks.size());
+  offset_.resize(contacts.size());
+  overlaps_.resize(blocks);
+  RigidContactSystem<Dim> system(particles, contacts, offset_);
+  if constexpr (Dim == 2) {
+    if (options.precision == Precision::single) return solve_in_single_precision(system, solver, dt);
+  }
+  parallel_ranges(contacts.size(), [&](int begin, int end) { prepare(begin, end, dt); });
+  system.apply_impulses(contacts.impulse);
+  const SolverReport report = solve_nlgs<Dim>(system, contacts.impulse, contacts.friction, solver);
+  parallel_for(blocks, [&](int k) { overlaps_[k] = overlaps_of(contacts.blocks[k]); });
+  return report;
+}
+
+template <int Dim>
+SolverReport RigidDynamics<Dim>::solve_in_single_precision(RigidContactSystem<Dim>& system,
+                                                           const SolverOptions& solver,
+                                                           double dt) requires(Dim == 2) {
+  narrow_.start(
+      particles, contacts, [&](int begin, int end) { prepare(begin, end, dt); }, offset_, solver.relaxation);
+  const SolverReport report =
+      repeat_sweeps([&](bool measured) { return narrow_.sweep(measured); }, solver.velocity_scale, solver);
+  for_each_block(static_cast<int>(contacts.blocks.size()), [&](int k) {
+    narrow_.read_impulses(contacts.blocks[k], contacts.impulse);
+    system.apply_impulses(k, contacts.impulse);
+    overlaps_[k] = overlaps_of(contacts.blocks[k]);
+  });
+  return report;
 }
 
 /// With v_m = (v + v+)/2: m/2 (v+^2 - v^2) = v_m . (dt F + H p); a wall's share is p against its own
@@ -159,12 +192,8 @@ StepReport RigidDynamics<Dim>::report(const SolverReport& solver) const {
                     .residual_mean = solver.residual_mean,
                     .residual_max = solver.residual_max,
                     .converged = solver.converged};
-  const auto overlaps = parallel_sum<Overlaps>(contacts.size(), [&](int begin, int end) {
-    Overlaps part;
-    for (int c = begin; c < end; ++c)
-      if (contacts.impulse[c][0] > 0) part += {1, std::max(0.0, -contacts.gap[c]), -contacts.gap[c]};
-    return part;
-  });
+  Overlaps overlaps;
+  for (const Overlaps& of_block : overlaps_) overlaps += of_block;
   report.contacts = overlaps.contacts;
   if (report.contacts > 0) report.overlap_mean = overlaps.sum / (report.contacts * mean_radius_);
   report.overlap_max = overlaps.deepest / mean_radius_;

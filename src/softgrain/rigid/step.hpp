@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <span>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "softgrain/contact/step_report.hpp"
 #include "softgrain/rigid/contact_system.hpp"
 #include "softgrain/rigid/contacts.hpp"
+#include "softgrain/rigid/narrow_sweeps.hpp"
 #include "softgrain/rigid/neighbours.hpp"
 #include "softgrain/rigid/particles.hpp"
 
@@ -20,6 +22,7 @@ struct RigidStepOptions {
   SolverOptions
       solver;  ///< velocity_scale 0: 2 <R> / dt, so that the tolerance is penetration per step over diameter
   ContactLaw law;
+  Precision precision = Precision::full;  ///< of the sweeps, in the plane
 };
 
 /// Work done in one step by each cause [J/m in 2D]; the sum of force, contact and wall is the change
@@ -30,6 +33,19 @@ struct StepWork {
   double wall = 0;     ///< by moving walls
   double between = 0;  ///< of `contact`: between grains and with walls
   double friction = 0;  ///< of `between`: by sliding
+};
+
+/// Overlaps of the contacts that carry impulse [m].
+struct Overlaps {
+  int contacts = 0;
+  double sum = 0, deepest = 0;
+
+  Overlaps& operator+=(const Overlaps& more) {
+    contacts += more.contacts;
+    sum += more.sum;
+    deepest = std::max(deepest, more.deepest);
+    return *this;
+  }
 };
 
 /// Rigid particles under contact dynamics: state, lists and scratch of the step. `friction` and the force
@@ -57,11 +73,14 @@ class RigidDynamics {
   void rebuild_contacts();
 
  private:
-  void update_contacts();
   void kick(const ForceField<Dim>& field, double dt);
+  void prepare(int begin, int end, double dt);
   SolverReport solve(double dt);
+  SolverReport solve_in_single_precision(RigidContactSystem<Dim>& system, const SolverOptions& solver,
+                                         double dt) requires(Dim == 2);
   void account_work(double dt);
   void account_contacts();
+  Overlaps overlaps_of(const ContactBlock& block) const;
   [[noreturn]] void throw_not_finite() const;
   StepReport report(const SolverReport& solver) const;
 
@@ -69,6 +88,9 @@ class RigidDynamics {
   std::vector<Vec<Dim>> force_, velocity_start_;
   std::vector<Spin<Dim>> spin_start_;
   std::vector<double> offset_;
+  RigidContacts<Dim> replaced_;  // its memory serves the next list
+  NarrowSweeps narrow_;
+  std::vector<Overlaps> overlaps_;  // of each block
   double mean_radius_ = 0;
 };
 

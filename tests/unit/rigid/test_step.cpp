@@ -60,12 +60,14 @@ double kinetic_by_definition(const RigidParticles<Dim>& bodies) {
 
 TEST_CASE_TEMPLATE("collisions with friction keep the momentum", Dimension, Plane, Space) {
   constexpr int Dim = Dimension::value;
-  auto dynamics = free_bodies<Dim>({});
-  const Vec<Dim> start = momentum(dynamics.particles);
-  int contacts = 0;
-  for (int step = 0; step < 100; ++step) contacts += dynamics.step(no_force<Dim>, 0.02).contacts;
-  CHECK(contacts > 100);
-  CHECK(norm(momentum(dynamics.particles) - start) < 1e-11);
+  for (const Precision precision : {Precision::full, Precision::single}) {
+    auto dynamics = free_bodies<Dim>({.solver = {}, .law = {}, .precision = precision});
+    const Vec<Dim> start = momentum(dynamics.particles);
+    int contacts = 0;
+    for (int step = 0; step < 100; ++step) contacts += dynamics.step(no_force<Dim>, 0.02).contacts;
+    CHECK(contacts > 100);
+    CHECK(norm(momentum(dynamics.particles) - start) < 1e-11);
+  }
 }
 
 TEST_CASE(
@@ -82,10 +84,10 @@ TEST_CASE(
   CHECK(angular_momentum(dynamics.particles) == doctest::Approx(expected + torque).epsilon(1e-12));
 }
 
-TEST_CASE_TEMPLATE("force, walls and contacts do the work that changes the kinetic energy", Dimension, Plane,
-                   Space) {
-  constexpr int Dim = Dimension::value;
-  RigidDynamics<Dim> dynamics(test::random_bodies<Dim>(Dim == 2 ? 7 : 4, 31), test::mixed_friction, {}, 0.2);
+template <int Dim>
+void check_work(Precision precision) {
+  RigidDynamics<Dim> dynamics(test::random_bodies<Dim>(Dim == 2 ? 7 : 4, 31), test::mixed_friction,
+                              {.solver = {}, .law = {}, .precision = precision}, 0.2);
   Vec<Dim> g;
   g[0] = -0.3, g[1] = -2;
   const auto gravity = [&](const RigidParticles<Dim>& bodies, std::span<Vec<Dim>> force) {
@@ -120,6 +122,12 @@ TEST_CASE_TEMPLATE("force, walls and contacts do the work that changes the kinet
     wall_work += work.wall;
   }
   CHECK(std::abs(wall_work) > 1);
+}
+
+TEST_CASE("force, walls and contacts do the work that changes the kinetic energy") {
+  check_work<2>(Precision::full);
+  check_work<2>(Precision::single);
+  check_work<3>(Precision::full);
 }
 
 TEST_CASE_TEMPLATE("contacts dissipate: without forces and push-out they never do work", Dimension, Plane,
@@ -260,8 +268,10 @@ TEST_CASE("what contacts inside a grain take is not counted as between grains") 
 
 TEST_CASE("coincident centres and forces that are not finite end with a NumericalError") {
   auto twins = rigid_particles<2>({{0, 0}, {0, 0}}, {1, 1}, {1, 1}, {});
-  RigidDynamics<2> coincident(twins, frictionless, {}, 0.5);
-  CHECK_THROWS_AS(coincident.step(no_force<2>, 0.01), NumericalError);
+  for (const Precision precision : {Precision::full, Precision::single}) {
+    RigidDynamics<2> coincident(twins, frictionless, {.solver = {}, .law = {}, .precision = precision}, 0.5);
+    CHECK_THROWS_AS(coincident.step(no_force<2>, 0.01), NumericalError);
+  }
 
   RigidDynamics<2> pulled(rigid_particles<2>({{0, 0}, {9, 0}}, {1, 1}, {1, 1}, {}), frictionless, {}, 0.5);
   const auto infinite = [](const auto&, auto force) {

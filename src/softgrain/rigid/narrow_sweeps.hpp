@@ -1,0 +1,85 @@
+#pragma once
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "softgrain/contact/residual.hpp"
+#include "softgrain/math/narrow.hpp"
+#include "softgrain/rigid/contacts.hpp"
+#include "softgrain/rigid/particles.hpp"
+
+namespace softgrain {
+
+/// NLGS over disks in single precision, eight contacts at once: the law of RigidContactSystem<2>::sweep,
+/// block by block (docs/decisions/0022). Positions, gaps and the velocities that a step leaves stay in
+/// double: they follow from the impulses found here, which act on both bodies alike. Same bits on any number
+/// of threads.
+class NarrowSweeps {
+ public:
+  /// Starts from the free velocities of the bodies and the impulses of the contacts, which act at once.
+  /// `prepare(begin, end)` makes sure of normals, impulses and `offset` (m) [m/s], as from signorini_offset,
+  /// of these contacts; omega = `relaxation`.
+  void start(const RigidParticles<2>& particles, const RigidContacts<2>& contacts,
+             const std::function<void(int, int)>& prepare, std::span<const double> offset, double relaxation);
+
+  /// One sweep. The violation is counted only if `measured`.
+  Violation sweep(bool measured);
+
+  /// The impulses found, (p_n, p_t) [N s/m], of a block of contacts.
+  void read_impulses(const ContactBlock& listed, std::span<Vec<2>> impulse) const;
+
+ private:
+  using Floats = Narrow::Floats;
+  static constexpr int eight = Wide::size;
+
+  /// Velocity of a body [m/s].
+  struct Velocity {
+    float x, y;
+  };
+  /// Contacts that share no particle. Lanes left over hold a contact of a body at rest with itself.
+  struct Eight {
+    int a[eight], b[eight];
+    Floats n_x, n_y, inverse_a, inverse_b, gain, offset, p_n;  // gain: omega / W_nn
+  };
+  struct FrictionalEight : Eight {
+    Floats friction, p_t;
+  };
+  /// The contacts begin .. begin + count - 1 of a block are an Eight.
+  struct Place {
+    int begin, count;
+  };
+  template <class AnyEight>
+  struct Batch {
+    std::vector<AnyEight> eights;
+    std::vector<Place> places;
+  };
+  /// A ContactBlock, made again only when its list is.
+  struct Block {
+    int made = -1;
+    Batch<Eight> frictionless;
+    Batch<FrictionalEight> frictional;
+  };
+  struct Bodies;
+  struct LaneViolation;
+
+  template <class AnyEight>
+  void fill(const RigidContacts<2>& contacts, const ContactBatch& listed, int begin, int idle,
+            Batch<AnyEight>& batch) const;
+  template <class AnyEight>
+  void load(const RigidContacts<2>& contacts, std::span<const double> offset, int begin,
+            Batch<AnyEight>& batch);
+  template <bool measured>
+  void relax(Eight& contact, LaneViolation& violation);
+  template <bool measured>
+  void relax(FrictionalEight& contact, LaneViolation& violation);
+  template <bool measured>
+  Violation sweep_block(Block& block);
+
+  std::vector<Block> blocks_;       // by ContactBlock::list
+  std::vector<int> listed_;         // those that have contacts, in the order of the sweep
+  std::vector<Velocity> velocity_;  // of the bodies, then of one at rest for each block
+  std::vector<float> spin_;
+  float relaxation_ = 1, inertia_ratio_ = 2;
+};
+
+}  // namespace softgrain
