@@ -42,12 +42,16 @@ void measure_parts(const BpmCompaction& simulation, const Case& c, Results& resu
   std::vector<double> offset;
   signorini_offset<2>(state.contacts, state.particles.velocity, {}, c.time.step, offset);
   RigidContactSystem<2> system(state.particles, state.contacts, offset);
+  NarrowSweeps narrow;
+  narrow.start(
+      state.particles, state.contacts, [](int, int) {}, offset, 1);
   const std::vector<double> seconds = fastest({
+      repeated(calls, [&] { narrow.sweep(true); }),
       repeated(calls, [&] { system.sweep(state.contacts.impulse, state.contacts.friction, {}); }),
       repeated(calls, [&] { detect_contacts(state.particles, state.contacts); }),
       repeated(calls, [&] { attraction.add_forces(state.particles, force); }),
   });
-  const char* names[] = {"one sweep", "detection", "attraction"};
+  const char* names[] = {"one sweep", "one sweep in double precision", "detection", "attraction"};
   for (std::size_t k = 0; k < seconds.size(); ++k) {
     results.add({.what = names[k], .value = 1e3 * seconds[k] / calls, .unit = "ms"});
     results.add({.what = fmt::format("{}, per candidate contact", names[k]),

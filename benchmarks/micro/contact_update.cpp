@@ -1,4 +1,4 @@
-// CPU time of one contact update of nonlinear Gauss-Seidel, four ways, over all candidates of a dense
+// CPU time of one contact update of nonlinear Gauss-Seidel, five ways, over all candidates of a dense
 // packing.
 #include <fmt/core.h>
 
@@ -6,6 +6,7 @@
 #include "packing.hpp"
 #include "softgrain/contact/nlgs.hpp"
 #include "softgrain/rigid/contact_system.hpp"
+#include "softgrain/rigid/narrow_sweeps.hpp"
 
 using namespace softgrain;
 using namespace softgrain::bench;
@@ -32,6 +33,12 @@ void measure(const PackingSize& size, double mu, Results& results) {
   const auto lanes = [&] {
     for (int k = 0; k < sweeps; ++k) system.sweep(problem.contacts.impulse, friction, options);
   };
+  NarrowSweeps narrow;
+  narrow.start(
+      problem.particles, problem.contacts, [](int, int) {}, problem.offset, options.relaxation);
+  const auto single = [&] {
+    for (int k = 0; k < sweeps; ++k) narrow.sweep(true);
+  };
   const auto generic = [&] {
     for (int k = 0; k < sweeps; ++k) nlgs_sweep<2>(system, problem.contacts.impulse, friction, 1.0);
   };
@@ -41,7 +48,7 @@ void measure(const PackingSize& size, double mu, Results& results) {
   const auto with_matrix = [&] {
     for (int k = 0; k < sweeps; ++k) nlgs_sweep<2>(stored, p, friction, 1.0);
   };
-  const auto seconds = fastest({lanes, generic, with_matrix});
+  const auto seconds = fastest({lanes, generic, with_matrix, single});
   const double updates = static_cast<double>(m) * sweeps;
   const auto add = [&](const char* what, double time, const char* reference) {
     results.add({.what = fmt::format("{} disks, mu {}: {}", size.disks(), mu, what),
@@ -52,6 +59,7 @@ void measure(const PackingSize& size, double mu, Results& results) {
   };
   add("generic sweep", seconds[1], "itself");
   add("four-lane sweep", seconds[0], "generic sweep");
+  add("eight-lane sweep in single precision", seconds[3], "generic sweep");
   add("generic sweep with W in full", seconds[2], "generic sweep");
 }
 
