@@ -15,6 +15,15 @@ struct BodyPair {
   auto operator<=>(const BodyPair&) const = default;
 };
 
+/// Pairs, and those of a later range after them.
+struct PairList {
+  std::vector<BodyPair> pairs;
+  PairList& operator+=(const PairList& more) {
+    pairs.insert(pairs.end(), more.pairs.begin(), more.pairs.end());
+    return *this;
+  }
+};
+
 /// Particles begin .. end - 1 with gap < skin at the reference positions, but not if `skipped(i, j)`.
 template <int Dim, class Skipped>
 std::vector<BodyPair> close_pairs(const RigidParticles<Dim>& particles,
@@ -22,16 +31,23 @@ std::vector<BodyPair> close_pairs(const RigidParticles<Dim>& particles,
                                   const GrainRange& range, const Skipped& skipped) {
   const auto x = std::span(reference).subspan(range.begin, range.end - range.begin);
   const double* radius = particles.radius.data() + range.begin;
-  std::vector<BodyPair> pairs;
-  if (x.size() < 2) return pairs;
+  if (x.size() < 2) return {};
   const CellGrid<Dim> grid(x, 2 * *std::max_element(radius, radius + x.size()) + skin);
-  grid.for_each_close_pair([&](int i, int j) {
-    const Vec<Dim> d = x[j] - x[i];
-    const double touch = radius[i] + radius[j] + skin;
-    if (dot(d, d) < touch * touch && !skipped(range.begin + i, range.begin + j))
-      pairs.push_back({range.begin + i, range.begin + j});
-  });
-  return pairs;
+  const auto pairs_of = [&](int i, std::vector<BodyPair>& pairs) {
+    grid.for_each_neighbour(i, [&](int j) {
+      if (j < i || skipped(range.begin + i, range.begin + j)) return;
+      const Vec<Dim> d = x[j] - x[i];
+      const double touch = radius[i] + radius[j] + skin;
+      if (dot(d, d) < touch * touch) pairs.push_back({range.begin + i, range.begin + j});
+    });
+  };
+  return parallel_sum<PairList>(static_cast<int>(x.size()),
+                                [&](int begin, int end) {
+                                  PairList part;
+                                  for (int i = begin; i < end; ++i) pairs_of(i, part.pairs);
+                                  return part;
+                                })
+      .pairs;
 }
 
 /// Pairs of different grains, then of particles and walls.
@@ -206,10 +222,11 @@ RigidContacts<Dim> candidate_contacts(const RigidParticles<Dim>& particles,
     return before[list] != nullptr && before[list]->made == reference.made[list];
   };
   std::vector<ListedBlock> made(grains + 1);
-  parallel_for(grains + 1, [&](int k) {
-    const int list = k == 0 ? grains : k - 1;  // the longest first
+  const auto make = [&](int list) {
     if (!is_kept(list)) made[list] = make_list(particles, reference, friction, list);
-  });
+  };
+  make(grains);  // on all threads by itself
+  parallel_for(grains, make);
 
   contacts.blocks.clear();
   int size = 0;
