@@ -1,6 +1,7 @@
 #include "softgrain/rigid/particles.hpp"
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
 
 namespace softgrain {
 
@@ -32,8 +33,9 @@ RigidParticles<Dim> rigid_particles(std::vector<Vec<Dim>> position, std::vector<
 
 template <int Dim>
 void drift(RigidParticles<Dim>& particles, double dt) {
-  for (std::size_t i = 0; i < particles.position.size(); ++i)
-    particles.position[i] += dt * particles.velocity[i];
+  parallel_ranges(particles.size(), [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) particles.position[i] += dt * particles.velocity[i];
+  });
   for (Wall<Dim>& wall : particles.walls) wall.point += dt * wall.velocity;
 }
 

@@ -34,8 +34,6 @@ template <int Dim>
 StepReport RigidDynamics<Dim>::step(const ForceField<Dim>& field, double dt) {
   drift(particles, dt / 2);  // x_m = x + dt/2 v
   if (renew_stale_lists(reference, particles)) rebuild_contacts();
-  velocity_start_ = particles.velocity;
-  spin_start_ = particles.spin;
   kick(field, dt);  // v_free = v + dt M^-1 F(x_m)
   const SolverReport solver =
       solve(dt);  // gaps and frames at x_m; v+ = v_free + M^-1 H p,  0 <= u_n + q_n _|_ p_n >= 0
@@ -51,12 +49,22 @@ void RigidDynamics<Dim>::rebuild_contacts() {
   replaced_ = std::exchange(contacts, std::move(made));
 }
 
+/// Keeps the velocities of the start.
 template <int Dim>
 void RigidDynamics<Dim>::kick(const ForceField<Dim>& field, double dt) {
-  force_.assign(particles.size(), {});
-  field(particles, force_);
+  force_.resize(particles.size());
+  velocity_start_.resize(particles.velocity.size());
+  spin_start_.resize(particles.spin.size());
   parallel_ranges(particles.size(), [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) particles.velocity[i] += dt * particles.inverse_mass[i] * force_[i];
+    std::fill(force_.begin() + begin, force_.begin() + end, Vec<Dim>{});
+  });
+  field(particles, force_);
+  parallel_ranges(static_cast<int>(particles.velocity.size()), [&](int begin, int end) {
+    std::copy(particles.velocity.begin() + begin, particles.velocity.begin() + end,
+              velocity_start_.begin() + begin);
+    std::copy(particles.spin.begin() + begin, particles.spin.begin() + end, spin_start_.begin() + begin);
+    for (int i = begin; i < std::min(end, particles.size()); ++i)
+      particles.velocity[i] += dt * particles.inverse_mass[i] * force_[i];
   });
 }
 
