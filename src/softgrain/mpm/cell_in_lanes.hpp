@@ -1,10 +1,31 @@
 #pragma once
 #include <array>
+#include <concepts>
 #include <numbers>
 
 #include "softgrain/mpm/soft_grains.hpp"
 
 namespace softgrain {
+
+/// Laws with P = mu F + h(J) cof F, which give h of several points at once.
+template <class Law>
+concept HasCofactorFactors = requires(const Law& law, const std::array<Wide, 4>& J) {
+  { law.mu } -> std::convertible_to<double>;
+  { law.cofactor_factors(J) } -> std::same_as<std::array<Wide, 4>>;
+};
+
+/// h with U'(mean J) instead of the points' own U'(J).
+template <HasCofactorFactors Law>
+std::array<Wide, 4> factors_of_mean_dilatation(const Law& law, const MaterialPoint* points,
+                                               const std::array<Wide, 4>& J) {
+  double volume = 0;
+  Wide mean_J = 0.0;
+  for (int p = 0; p < 4; ++p) mean_J += points[p].volume * J[p], volume += points[p].volume;
+  const Wide pressure = law.volume().derivative(mean_J * Wide(1 / volume));
+  std::array<Wide, 4> h = law.deviatoric().cofactor_factors(J);
+  for (Wide& of_point : h) of_point += pressure;
+  return h;
+}
 
 /// A cell of eight grains, in its own coordinates u, v from 0 to 1 (node 0 at (0, 0), 1 at (1, 0), 2 at
 /// (1, 1), 3 at (0, 1)):

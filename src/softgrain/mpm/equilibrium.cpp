@@ -106,26 +106,6 @@ CellForce cell_force_mean_dilatation(const Law& law, const CellState& state, Inv
   return force;
 }
 
-/// Laws with P = mu F + h(J) cof F, which give h of several points at once.
-template <class Law>
-concept HasCofactorFactors = requires(const Law& law, const std::array<Wide, 4>& J) {
-  { law.mu } -> std::convertible_to<double>;
-  { law.cofactor_factors(J) } -> std::same_as<std::array<Wide, 4>>;
-};
-
-/// h with U'(mean J) instead of the points' own U'(J).
-template <HasCofactorFactors Law>
-std::array<Wide, 4> factors_mean_dilatation(const Law& law, const MaterialPoint* points,
-                                            const std::array<Wide, 4>& J) {
-  double volume = 0;
-  Wide mean_J = 0.0;
-  for (int p = 0; p < 4; ++p) mean_J += points[p].volume * J[p], volume += points[p].volume;
-  const Wide pressure = law.volume().derivative(mean_J * Wide(1 / volume));
-  std::array<Wide, 4> h = law.deviatoric().cofactor_factors(J);
-  for (Wide& of_point : h) of_point += pressure;
-  return h;
-}
-
 template <HasCofactorFactors Law>
 unsigned add_forces_of_cells(const Law& law, bool mean_dilatation, const GrainBatch& batch,
                              WideVectors& force) {
@@ -138,10 +118,10 @@ unsigned add_forces_of_cells(const Law& law, bool mean_dilatation, const GrainBa
     const CellInLanes cell(batch.position, nodes);
     const std::array<Wide, 4> J = cell.J(shape, inverse_square_radius);
     for (const Wide& of_point : J) inverted.note(of_point);
-    cell.add_force(
-        shape, law.mu,
-        mean_dilatation ? factors_mean_dilatation(law, &topology.points[4 * c], J) : law.cofactor_factors(J),
-        nodes, force);
+    cell.add_force(shape, law.mu,
+                   mean_dilatation ? factors_of_mean_dilatation(law, &topology.points[4 * c], J)
+                                   : law.cofactor_factors(J),
+                   nodes, force);
   }
   return inverted.lanes();
 }
