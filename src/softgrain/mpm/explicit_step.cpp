@@ -10,7 +10,6 @@
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/mpm/contact_work.hpp"
 #include "softgrain/mpm/equilibrium.hpp"
-#include "softgrain/mpm/lumped_contacts.hpp"
 
 namespace softgrain {
 namespace {
@@ -57,13 +56,12 @@ SoftStepReport ExplicitDynamics::step(double dt) {
   impulse = carried_impulses(grains, contacts, impulse, found);
   contacts = std::move(found);
 
-  LumpedContacts system(contacts, walls, outline_velocity_, inverse_mass_, dt);
+  LumpedContacts system(contacts, outline_, outline_velocity_, inverse_mass_, lumped_scratch_);
   kick(dt);
   std::vector<double> friction;
   for (const OutlineContact& c : contacts)
     friction.push_back(c.wall >= 0 ? options.wall_friction : options.friction);
-  for (int c = 0; c < system.size(); ++c)
-    if (impulse[c][0] > 0) system.apply_impulse(c, impulse[c]);
+  system.apply_impulses(impulse);
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
   const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction, solver);

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "softgrain/contact/solver_options.hpp"
+#include "softgrain/mpm/lumped_contacts.hpp"
 #include "softgrain/mpm/outline_contacts.hpp"
 #include "softgrain/mpm/soft_grains.hpp"
 #include "softgrain/mpm/soft_step_report.hpp"
@@ -11,7 +12,8 @@ namespace softgrain {
 struct ExplicitOptions {
   double damping_time =
       0;  ///< tau [s]: internal forces are taken at x + tau v, which damps the mesh's own vibrations
-  SolverOptions solver{.max_sweeps = 200, .tolerance = 5e-6};  ///< NLGS; in units of mean radius / dt
+  SolverOptions solver{
+      .max_sweeps = 200, .tolerance = 5e-6, .relaxation = 1.4};  ///< NLGS; in units of mean radius / dt
   double friction = 0;
   double wall_friction = 0;
   Vec<2> gravity{};  ///< [m/s^2]
@@ -66,6 +68,7 @@ class ExplicitDynamics {
   std::vector<Vec<2>> outline_velocity_, outline_velocity_start_;
   std::vector<double> inverse_mass_;  // (outline vertices)
   std::vector<Vec<2>> wall_impulse_;
+  LumpedContacts::Scratch lumped_scratch_;
   std::vector<BatchStep> batch_step_;
 };
 
