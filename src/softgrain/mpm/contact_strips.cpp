@@ -35,8 +35,9 @@ void ContactStrips::sort(std::span<const OutlineContact> contacts, std::span<con
   }
   for (int s = 0; s < strips; ++s) begin[s + 1] += begin[s];
   order.resize(n);
+  place.resize(n);
   std::vector<int> next(begin.begin(), begin.end() - 1);
-  for (int c = 0; c < n; ++c) order[next[strip_[c]]++] = c;
+  for (int c = 0; c < n; ++c) order[place[c] = next[strip_[c]]++] = c;
 }
 
 }  // namespace softgrain

@@ -15,6 +15,7 @@ struct ContactStrips {
   int count() const { return static_cast<int>(begin.size()) - 1; }
 
   std::vector<int> order;     ///< (contacts) strip by strip, as in the list within each
+  std::vector<int> place;     ///< (contacts) of each contact in `order`
   std::vector<int> begin{0};  ///< (strips + 1) where in `order` each begins
 
  private:

@@ -12,6 +12,23 @@ constexpr int least_for_threads = 512;
 
 }  // namespace
 
+inline Vec<2> LumpedContacts::relative_velocity(const Row& row) const {
+  const Vec<2>* v = velocity_.data();
+  Vec<2> u = v[row.vertex[0]];
+  if (!row.wall)
+    u -= (row.weight[0] * v[row.vertex[1]] + row.weight[1] * v[row.vertex[2]]) +
+         (row.weight[2] * v[row.vertex[3]] + row.weight[3] * v[row.vertex[4]]);
+  return {dot(row.normal, u) + row.offset[0], dot(perpendicular(row.normal), u) + row.offset[1]};
+}
+
+inline void LumpedContacts::apply_impulse(const Row& row, const Vec<2>& dp) {
+  const Vec<2> P = dp[0] * row.normal + dp[1] * perpendicular(row.normal);
+  Vec<2>* v = velocity_.data();
+  v[row.vertex[0]] += row.mobility[0] * P;
+  if (row.wall) return;
+  for (std::size_t k = 1; k < 5; ++k) v[row.vertex[k]] += row.mobility[k] * P;
+}
+
 LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, const OutlineState& outline,
                                std::span<Vec<2>> velocity, std::span<const double> inverse_mass,
                                Scratch& scratch)
@@ -20,8 +37,8 @@ LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, const O
   rows_.resize(contacts.size());
   for_each_strip([&](int strip) {
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
-      const int c = strips_.order[k];
-      rows_[c] = row_of(contacts[c], outline, inverse_mass);
+      rows_[k] = row_of(contacts[strips_.order[k]], outline, inverse_mass);
+      rows_[k].contact = strips_.order[k];
     }
   });
 }
@@ -61,32 +78,22 @@ LumpedContacts::Row LumpedContacts::row_of(const OutlineContact& contact, const 
   return row;
 }
 
-Vec<2> LumpedContacts::relative_velocity(const Row& row) const {
-  Vec<2> u = velocity_[row.vertex[0]];
-  if (!row.wall)
-    for (std::size_t k = 0; k < 4; ++k) u -= row.weight[k] * velocity_[row.vertex[k + 1]];
-  return {dot(row.normal, u) + row.offset[0], dot(perpendicular(row.normal), u) + row.offset[1]};
-}
+Vec<2> LumpedContacts::relative_velocity(int contact) const { return relative_velocity(row(contact)); }
 
-void LumpedContacts::apply_impulse(const Row& row, const Vec<2>& dp) {
-  const Vec<2> P = dp[0] * row.normal + dp[1] * perpendicular(row.normal);
-  velocity_[row.vertex[0]] += row.mobility[0] * P;
-  if (row.wall) return;
-  for (std::size_t k = 1; k < 5; ++k) velocity_[row.vertex[k]] += row.mobility[k] * P;
-}
+void LumpedContacts::apply_impulse(int contact, const Vec<2>& dp) { apply_impulse(row(contact), dp); }
 
 void LumpedContacts::apply_impulses(std::span<const Vec<2>> impulse) {
   for_each_strip([&](int strip) {
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k)
-      if (const int c = strips_.order[k]; impulse[c][0] > 0) apply_impulse(rows_[c], impulse[c]);
+      if (const Vec<2>& p = impulse[rows_[k].contact]; p[0] > 0) apply_impulse(rows_[k], p);
   });
 }
 
-/// Puts one contact right: the violation that it showed.
-Violation LumpedContacts::solve(const Row& row, Vec<2>& p, double friction, const SolverOptions& options) {
-  Violation violation;
+/// Puts one contact right, and adds the violation that it showed.
+inline void LumpedContacts::solve(const Row& row, Vec<2>& p, double friction, const SolverOptions& options,
+                                  Violation& violation) {
   const Vec<2> u = relative_velocity(row);
-  if (p[0] == 0 && u[0] >= 0) return violation;
+  if (p[0] == 0 && u[0] >= 0) return;
   Vec<2> solved{std::max(0.0, p[0] - u[0] * row.inverse_delassus), 0};
   if (const double most = friction * solved[0]; most > 0)
     solved[1] = std::clamp(p[1] - u[1] * row.inverse_delassus, -most, most);
@@ -97,7 +104,6 @@ Violation LumpedContacts::solve(const Row& row, Vec<2>& p, double friction, cons
   const Vec<2> dp = next - p;
   p = next;
   apply_impulse(row, dp);
-  return violation;
 }
 
 Violation LumpedContacts::sweep(std::span<Vec<2>> impulse, std::span<const double> friction,
@@ -106,8 +112,8 @@ Violation LumpedContacts::sweep(std::span<Vec<2>> impulse, std::span<const doubl
   for_each_strip([&](int strip) {
     Violation sum;
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
-      const int c = strips_.order[k];
-      sum += solve(rows_[c], impulse[c], friction[c], options);
+      const int c = rows_[k].contact;
+      solve(rows_[k], impulse[c], friction[c], options, sum);
     }
     of_strip[strip] = sum;
   });
