@@ -20,14 +20,15 @@ constexpr double skin_share = 0.5;
 /// Vertices that a thread takes at once.
 constexpr int part_size = 128;
 
-/// Neighbour of a vertex along its own outline.
-int next_vertex(const SoftGrains& grains, int vertex) {
+/// The vertices of one outline, in a ring.
+struct Ring {
+  int begin, end;
+  int next(int vertex) const { return vertex + 1 < end ? vertex + 1 : begin; }
+  int previous(int vertex) const { return vertex > begin ? vertex - 1 : end - 1; }
+};
+Ring ring_of(const SoftGrains& grains, int vertex) {
   const int grain = grains.grain_of_vertex(vertex);
-  return vertex + 1 < grains.outline_end(grain) ? vertex + 1 : grains.outline_begin(grain);
-}
-int previous_vertex(const SoftGrains& grains, int vertex) {
-  const int grain = grains.grain_of_vertex(vertex);
-  return vertex > grains.outline_begin(grain) ? vertex - 1 : grains.outline_end(grain) - 1;
+  return {grains.outline_begin(grain), grains.outline_end(grain)};
 }
 
 /// Mean distance of a grain's outline vertices when it was round [m].
@@ -41,12 +42,6 @@ struct Nearest {
   int grain, vertex;
   double distance_squared;
 };
-
-/// The span of an outline that starts at vertex `first`: it, the next one, and the neighbours of both.
-std::array<int, 4> span_from(const SoftGrains& grains, int first) {
-  const int second = next_vertex(grains, first);
-  return {previous_vertex(grains, first), first, second, next_vertex(grains, second)};
-}
 
 /// The curve of a span as a polynomial, c(xi) = a + xi (b + xi (c + xi d)).
 class SpanCurve {
@@ -83,21 +78,21 @@ class SpanCurve {
   Vec<2> start_, end_, b_, c_, d_;
 };
 
-/// The span of the master's outline that a slave at x faces, next to the vertex nearest to it.
-std::array<int, 4> facing_span(const SoftGrains& grains, std::span<const Vec<2>> position, const Vec<2>& x,
-                               int nearest) {
-  const std::array<int, 4> span = span_from(grains, nearest);
-  const Vec<2> tangent = position[span[2]] - position[span[0]];
-  return dot(x - position[nearest], tangent) < 0 ? span_from(grains, previous_vertex(grains, nearest)) : span;
+/// The vertex of a master's outline where the segment starts that x faces, next to the vertex nearest to x.
+int facing_segment(const Ring& ring, std::span<const Vec<2>> position, const Vec<2>& x, int nearest) {
+  const int before = ring.previous(nearest);
+  const Vec<2> tangent = position[ring.next(nearest)] - position[before];
+  return dot(x - position[nearest], tangent) < 0 ? before : nearest;
 }
 
-/// True if a point is surely more than `margin` outside a span, whose curve bulges by less than a quarter of
-/// its chord.
-bool surely_outside(std::span<const Vec<2>> position, const std::array<int, 4>& span, const Vec<2>& x,
-                    double margin) {
-  const Vec<2> chord = position[span[2]] - position[span[1]];
-  const double length = norm(chord);
-  return -dot(x - position[span[1]], perpendicular(chord)) > (margin + length / 4) * length;
+/// True if x is surely more than `margin` outside the curve between two neighbours, which bulges by less than
+/// a quarter of its chord.
+bool surely_outside(const Vec<2>& start, const Vec<2>& end, const Vec<2>& x, double margin) {
+  const Vec<2> chord = end - start;
+  const double square = dot(chord, chord);
+  // distance times |chord|, beyond the bulge, against margin times |chord|
+  const double beyond = -dot(x - start, perpendicular(chord)) - square / 4;
+  return beyond > 0 && beyond * beyond > margin * margin * square;
 }
 
 /// The place of a span that a slave faces.
@@ -123,16 +118,16 @@ OutlineContact wall_contact(const OutlineState& state, int slave, int wall_index
   return contact;
 }
 
-/// The vertex of a master's outline nearest to `slave`, walking downhill from `start`.
-int nearest_vertex(const SoftGrains& grains, std::span<const Vec<2>> position, int slave, int start) {
+/// The vertex of a master's outline nearest to x, walking downhill from `start`.
+int nearest_vertex(const Ring& ring, std::span<const Vec<2>> position, const Vec<2>& x, int start) {
   const auto distance_squared = [&](int w) {
-    const Vec<2> d = position[w] - position[slave];
+    const Vec<2> d = position[w] - x;
     return dot(d, d);
   };
   int nearest = start;
   double least = distance_squared(start);
   for (;;) {
-    const int before = previous_vertex(grains, nearest), after = next_vertex(grains, nearest);
+    const int before = ring.previous(nearest), after = ring.next(nearest);
     const double d_before = distance_squared(before), d_after = distance_squared(after);
     if (least <= d_before && least <= d_after) return nearest;
     nearest = d_before < d_after ? before : after;
@@ -188,7 +183,7 @@ void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineS
   for (int g = 0; g < grains.size(); ++g) segment_ += segment_length(grains, g) / grains.size();
   double longest = 0;
   for (int v = 0; v < grains.outline_size(); ++v)
-    longest = std::max(longest, norm(state.position[next_vertex(grains, v)] - state.position[v]));
+    longest = std::max(longest, norm(state.position[ring_of(grains, v).next(v)] - state.position[v]));
   const double reach = longest + (largest_margin + skin_share) * segment_;
   const CellGrid<2> grid(state.position, reach);
   parallel_for(static_cast<int>(parts_.size()), [&](int k) {
@@ -209,18 +204,20 @@ void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineSta
   part.contacts.clear();
   auto candidate = part.candidates.begin();
   for (int v = part.begin; v < part.end; ++v) {
+    const Vec<2>& x = state.position[v];
     for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
       const Wall<2>& wall = state.walls[w];
-      if (dot(state.position[v] - wall.point, wall.normal) < margin)
-        part.contacts.push_back(wall_contact(state, v, w));
+      if (dot(x - wall.point, wall.normal) < margin) part.contacts.push_back(wall_contact(state, v, w));
     }
     for (; candidate != part.candidates.end() && candidate->vertex == v; ++candidate) {
-      candidate->nearest = nearest_vertex(grains, state.position, v, candidate->nearest);
-      const Vec<2> d = state.position[v] - state.position[candidate->nearest];
+      const Ring ring = ring_of(grains, candidate->nearest);
+      candidate->nearest = nearest_vertex(ring, state.position, x, candidate->nearest);
+      const Vec<2> d = x - state.position[candidate->nearest];
       if (dot(d, d) > 9 * segment_ * segment_) continue;
-      const auto span = facing_span(grains, state.position, state.position[v], candidate->nearest);
-      if (surely_outside(state.position, span, state.position[v], margin)) continue;
-      const OutlineContact contact = curve_contact(state, v, span);
+      const int start = facing_segment(ring, state.position, x, candidate->nearest), end = ring.next(start);
+      if (surely_outside(state.position[start], state.position[end], x, margin)) continue;
+      const OutlineContact contact =
+          curve_contact(state, v, {ring.previous(start), start, end, ring.next(end)});
       if (contact.gap < margin) part.contacts.push_back(contact);
     }
   }
