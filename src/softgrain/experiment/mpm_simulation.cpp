@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/experiment/arrays.hpp"
 #include "softgrain/geometry/polygon.hpp"
 #include "softgrain/math/tensor.hpp"
@@ -20,14 +21,19 @@ constexpr double largest_motion = 0.5;
 
 /// First grain that moves further than that in dt, or not by a number; -1 if none does.
 int runaway_grain(const SoftGrains& grains, double dt) {
-  for (const GrainBatch& batch : grains.batches) {
+  std::vector<int> runaway(grains.batches.size(), -1);
+  parallel_for(static_cast<int>(runaway.size()), [&](int b) {
+    const GrainBatch& batch = grains.batches[b];
     Wide sum = 0.0;
     for (const Vec<2, Wide>& v : batch.velocity) sum += dot(v, v);
     const double nodes = static_cast<double>(batch.velocity.size());
-    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
-      if (!(dt * std::sqrt(sum[lane] / nodes) < largest_motion * batch.radius[lane]))
-        return batch.grain[lane];
-  }
+    for (int lane = Wide::size - 1; lane >= 0; --lane)
+      if (batch.grain[lane] >= 0 &&
+          !(dt * std::sqrt(sum[lane] / nodes) < largest_motion * batch.radius[lane]))
+        runaway[b] = batch.grain[lane];
+  });
+  for (const int grain : runaway)
+    if (grain >= 0) return grain;
   return -1;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include "softgrain/material/lame.hpp"
 #include "softgrain/material/volumetric.hpp"
+#include "softgrain/math/log_inverse.hpp"
 #include "softgrain/math/tensor.hpp"
 
 namespace softgrain {
@@ -24,19 +25,20 @@ struct NeoHookean {
   /// First Piola-Kirchhoff stress P = dpsi/dF [Pa] = mu F + h cof F, h = U'(J) - mu / J.
   template <int Dim, class T>
   [[gnu::always_inline]] Mat<Dim, T> stress(const Mat<Dim, T>& F) const {
-    return stress(F, cofactor_factor(determinant(F)));
-  }
-  /// h(J) [Pa], and P with it: for several points at once.
-  template <class T>
-  [[gnu::always_inline]] T cofactor_factor(const T& J) const {
-    return volumetric.derivative(J) - mu * (1.0 / J);
-  }
-  template <int Dim, class T>
-  [[gnu::always_inline]] Mat<Dim, T> stress(const Mat<Dim, T>& F, const T& h) const {
+    const T J = determinant(F), h = volumetric.derivative(J) - mu * (1.0 / J);
     const Mat<Dim, T> cof = cofactor(F);
     Mat<Dim, T> P;
     for (std::size_t k = 0; k < P.c.size(); ++k) P.c[k] = mu * F.c[k] + h * cof.c[k];
     return P;
+  }
+  /// h(J) [Pa] of several points at once.
+  template <class T, std::size_t N>
+  [[gnu::always_inline]] std::array<T, N> cofactor_factors(const std::array<T, N>& J) const {
+    const LogInverse<T, N> of_J = log_inverse(J);
+    std::array<T, N> h;
+    for (std::size_t k = 0; k < N; ++k)
+      h[k] = (volumetric.kirchhoff(J[k], of_J.log[k]) - mu) * of_J.inverse[k];
+    return h;
   }
 
   /// dP_iJ/dF_kL [Pa] at (i Dim + J, k Dim + L) = mu 1 + h' cof F (x) cof F + h d(cof F)/dF.

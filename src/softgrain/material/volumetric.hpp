@@ -4,8 +4,8 @@
 namespace softgrain {
 
 // Energies of volume change U(J) [J/m^3], J = det F, with U(1) = U'(1) = 0. `derivative` is U' and
-// `second_derivative` U'' [Pa]. Part of the hyperelastic laws, and what mean dilatation evaluates at the mean
-// J of a cell.
+// `second_derivative` U'' [Pa]. `kirchhoff` is J U' [Pa], given ln J. Part of the hyperelastic laws, and what
+// mean dilatation evaluates at the mean J of a cell.
 
 /// U = lambda/2 (ln J)^2: infinite at J = 0, but softer than linear for J > 1 and concave for J > e.
 struct LogVolume {
@@ -19,6 +19,10 @@ struct LogVolume {
   template <class T>
   T derivative(const T& J) const {
     return lambda * log(J) * (1.0 / J);
+  }
+  template <class T>
+  T kirchhoff(const T&, const T& log_J) const {
+    return lambda * log_J;
   }
   template <class T>
   T second_derivative(const T& J) const {
@@ -40,6 +44,10 @@ struct QuadraticVolume {
     return lambda * (J - 1.0);
   }
   template <class T>
+  T kirchhoff(const T& J, const T&) const {
+    return lambda * (J - 1.0) * J;
+  }
+  template <class T>
   T second_derivative(const T&) const {
     return T(lambda);
   }
@@ -55,6 +63,10 @@ struct NoVolume {
   }
   template <class T>
   T derivative(const T&) const {
+    return T(0.0);
+  }
+  template <class T>
+  T kirchhoff(const T&, const T&) const {
     return T(0.0);
   }
   template <class T>

@@ -5,6 +5,7 @@
 
 #include "softgrain/material/elastic_law.hpp"
 #include "softgrain/math/tensor.hpp"
+#include "softgrain/mpm/cell_in_lanes.hpp"
 
 namespace softgrain {
 namespace {
@@ -84,18 +85,6 @@ class CellForce {
 
 template <class Law>
 CellForce cell_force(const Law& law, const CellState& state, InvertedLanes& inverted) {
-  if constexpr (requires { law.cofactor_factor(state.F[0](0, 0)); }) {
-    // the logarithms side by side: each alone is a chain that the processor waits for
-    std::array<Wide, 4> h;
-    for (int p = 0; p < 4; ++p) {
-      h[p] = determinant(state.F[p]);
-      inverted.note(h[p]);
-    }
-    for (Wide& of_point : h) of_point = law.cofactor_factor(of_point);
-    CellForce force(law.stress(state.F[0], h[0]), state.points[0]);
-    for (int p = 1; p < 4; ++p) force.add(law.stress(state.F[p], h[p]), state.points[p]);
-    return force;
-  }
   const auto stress = [&](int p) {
     if (Law::needs_positive_J) inverted.note(determinant(state.F[p]));
     return law.stress(state.F[p]);
@@ -115,6 +104,26 @@ CellForce cell_force_mean_dilatation(const Law& law, const CellState& state, Inv
   CellForce force = cell_force(law.deviatoric(), state, inverted);
   for (int p = 0; p < 4; ++p) force.add(pressure * cofactor(state.F[p]), state.points[p]);
   return force;
+}
+
+template <HasCofactorFactors Law>
+unsigned add_forces_of_cells(const Law& law, bool mean_dilatation, const GrainBatch& batch,
+                             WideVectors& force) {
+  const Topology& topology = *batch.topology;
+  const Wide inverse_square_radius = 1.0 / (batch.radius * batch.radius);
+  InvertedLanes inverted;
+  for (std::size_t c = 0; c < topology.grid.cell.size(); ++c) {
+    const std::array<int, 4>& nodes = topology.grid.cell[c];
+    const CellShape& shape = topology.cell_shapes[c];
+    const CellInLanes cell(batch.position, nodes);
+    const std::array<Wide, 4> J = cell.J(shape, inverse_square_radius);
+    for (const Wide& of_point : J) inverted.note(of_point);
+    cell.add_force(shape, law.mu,
+                   mean_dilatation ? factors_of_mean_dilatation(law, &topology.points[4 * c], J)
+                                   : law.cofactor_factors(J),
+                   nodes, force);
+  }
+  return inverted.lanes();
 }
 
 /// The ten blocks K_ab, b <= a, of a cell.
@@ -180,6 +189,8 @@ unsigned internal_force(const SoftGrains& grains, const GrainBatch& batch, WideV
   force.assign(batch.position.size(), {});
   return std::visit(
       [&]<class Law>(const Law& law) {
+        if constexpr (HasCofactorFactors<Law>)
+          return add_forces_of_cells(law, grains.mean_dilatation, batch, force);
         InvertedLanes inverted;
         for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell) {
           const CellState state(batch, cell);

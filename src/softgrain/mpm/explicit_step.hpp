@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "softgrain/contact/solver_options.hpp"
+#include "softgrain/mpm/lumped_contacts.hpp"
 #include "softgrain/mpm/outline_contacts.hpp"
 #include "softgrain/mpm/soft_grains.hpp"
 #include "softgrain/mpm/soft_step_report.hpp"
@@ -11,7 +12,8 @@ namespace softgrain {
 struct ExplicitOptions {
   double damping_time =
       0;  ///< tau [s]: internal forces are taken at x + tau v, which damps the mesh's own vibrations
-  SolverOptions solver{.max_sweeps = 200, .tolerance = 5e-6};  ///< NLGS; in units of mean radius / dt
+  SolverOptions solver{
+      .max_sweeps = 200, .tolerance = 5e-6, .relaxation = 1.4};  ///< NLGS; in units of mean radius / dt
   double friction = 0;
   double wall_friction = 0;
   Vec<2> gravity{};  ///< [m/s^2]
@@ -42,20 +44,32 @@ class ExplicitDynamics {
   WorkBudget work;          ///< since the start; there is no `inertia`
 
  private:
+  /// Of a batch: its outline's nodes at the start of the step, and the work over the step.
+  struct BatchStep {
+    WideVectors force, velocity;
+    Wide internal = 0.0, gravity = 0.0;
+
+    void add_work(const Vec<2, Wide>& internal_force, const Vec<2, Wide>& weight, const Vec<2, Wide>& moved) {
+      internal += dot(internal_force, moved);
+      gravity += dot(weight, moved);
+    }
+  };
+  Vec<2, Wide> weight(const GrainBatch& batch, int node) const;
+  void fly_outline(double dt);
   void kick(double dt);
-  void drift(double dt);
+  void kick_batch(double dt, const WideVectors& force, GrainBatch& batch, BatchStep& step) const;
+  void drift_outline(double dt);
   void add_contact_work(double dt);
-  void read_outline();
-  void write_outline();
+  double penetration_max() const;
 
   double mean_radius_ = 0, smallest_radius_ = 0;
   OutlineNeighbours neighbours_;
   OutlineState outline_;
-  std::vector<Vec<2>> outline_velocity_;
+  std::vector<Vec<2>> outline_velocity_, outline_velocity_start_;
   std::vector<double> inverse_mass_;  // (outline vertices)
   std::vector<Vec<2>> wall_impulse_;
-  std::vector<WideVectors> force_, velocity_start_;  // per batch
-  std::vector<Vec<2>> velocity_start_outline_;
+  LumpedContacts::Scratch lumped_scratch_;
+  std::vector<BatchStep> batch_step_;
 };
 
 /// A stable step [s]: `safety` times the smallest distance of two nodes of a cell over the wave speed of

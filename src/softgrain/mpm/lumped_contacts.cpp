@@ -2,66 +2,123 @@
 
 #include <algorithm>
 
+#include "softgrain/core/parallel.hpp"
+
 namespace softgrain {
+namespace {
 
-LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, std::span<const Wall<2>> walls,
-                               std::span<Vec<2>> velocity, std::span<const double> inverse_mass, double dt)
-    : velocity_(velocity) {
-  rows_.reserve(contacts.size());
-  for (const OutlineContact& c : contacts) {
-    Row row;
-    row.vertex[0] = c.vertex;
-    row.normal = c.normal;
-    if (c.wall >= 0) {
-      row.offset = {-dot(c.normal, walls[c.wall].velocity),
-                    -dot(perpendicular(c.normal), walls[c.wall].velocity)};
-    } else {
-      const auto weight = c.weights();
-      row.count = 5;
-      for (std::size_t m = 0; m < 4; ++m) {
-        row.vertex[m + 1] = c.master[m];
-        row.weight[m + 1] = -weight[m];
-      }
-    }
-    for (int k = 0; k < row.count; ++k) {
-      row.answer[k] = row.weight[k] * inverse_mass[row.vertex[k]];
-      row.delassus += row.weight[k] * row.answer[k];
-    }
-    row.offset[0] += c.gap / dt - relative_velocity(row)[0];
-    rows_.push_back(row);
-  }
-}
+/// With fewer contacts threads cost more than they bring.
+constexpr int least_for_threads = 512;
 
-Vec<2> LumpedContacts::relative_velocity(const Row& row) const {
-  Vec<2> u = velocity_[row.vertex[0]];
-  for (int k = 1; k < row.count; ++k) u += row.weight[k] * velocity_[row.vertex[k]];
+}  // namespace
+
+inline Vec<2> LumpedContacts::relative_velocity(const Row& row) const {
+  const Vec<2>* v = velocity_.data();
+  Vec<2> u = v[row.vertex[0]];
+  if (!row.wall)
+    u -= (row.weight[0] * v[row.vertex[1]] + row.weight[1] * v[row.vertex[2]]) +
+         (row.weight[2] * v[row.vertex[3]] + row.weight[3] * v[row.vertex[4]]);
   return {dot(row.normal, u) + row.offset[0], dot(perpendicular(row.normal), u) + row.offset[1]};
 }
 
-void LumpedContacts::apply_impulse(const Row& row, const Vec<2>& dp) {
+inline void LumpedContacts::apply_impulse(const Row& row, const Vec<2>& dp) {
   const Vec<2> P = dp[0] * row.normal + dp[1] * perpendicular(row.normal);
-  for (int k = 0; k < row.count; ++k) velocity_[row.vertex[k]] += row.answer[k] * P;
+  Vec<2>* v = velocity_.data();
+  v[row.vertex[0]] += row.mobility[0] * P;
+  if (row.wall) return;
+  for (std::size_t k = 1; k < 5; ++k) v[row.vertex[k]] += row.mobility[k] * P;
+}
+
+LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, const OutlineState& outline,
+                               std::span<Vec<2>> velocity, std::span<const double> inverse_mass,
+                               Scratch& scratch)
+    : rows_(scratch.rows), strips_(scratch.strips), velocity_(velocity) {
+  strips_.sort(contacts, outline.position);
+  rows_.resize(contacts.size());
+  for_each_strip([&](int strip) {
+    for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
+      rows_[k] = row_of(contacts[strips_.order[k]], outline, inverse_mass);
+      rows_[k].contact = strips_.order[k];
+    }
+  });
+}
+
+/// work(strip) for all even strips, then for all odd ones.
+template <class Work>
+void LumpedContacts::for_each_strip(const Work& work) const {
+  for (const int first : {0, 1}) {
+    const int count = (strips_.count() + 1 - first) / 2;
+    if (size() >= least_for_threads)
+      parallel_for(count, [&](int k) { work(first + 2 * k); });
+    else
+      for (int k = 0; k < count; ++k) work(first + 2 * k);
+  }
+}
+
+LumpedContacts::Row LumpedContacts::row_of(const OutlineContact& contact, const OutlineState& outline,
+                                           std::span<const double> inverse_mass) const {
+  Row row;
+  row.vertex[0] = contact.vertex;
+  row.normal = contact.normal;
+  row.delassus = row.mobility[0] = inverse_mass[contact.vertex];
+  row.wall = contact.wall >= 0;
+  if (row.wall) {
+    const Vec<2>& v = outline.walls[contact.wall].velocity;
+    row.offset = {-dot(contact.normal, v), -dot(perpendicular(contact.normal), v)};
+  } else {
+    row.weight = contact.weights();
+    for (std::size_t k = 0; k < 4; ++k) {
+      row.vertex[k + 1] = contact.master[k];
+      row.mobility[k + 1] = -row.weight[k] * inverse_mass[contact.master[k]];
+      row.delassus -= row.weight[k] * row.mobility[k + 1];
+    }
+  }
+  row.inverse_delassus = 1 / row.delassus;
+  row.offset[0] += contact.gap / outline.dt - relative_velocity(row)[0];
+  return row;
+}
+
+Vec<2> LumpedContacts::relative_velocity(int contact) const { return relative_velocity(row(contact)); }
+
+void LumpedContacts::apply_impulse(int contact, const Vec<2>& dp) { apply_impulse(row(contact), dp); }
+
+void LumpedContacts::apply_impulses(std::span<const Vec<2>> impulse) {
+  for_each_strip([&](int strip) {
+    for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k)
+      if (const Vec<2>& p = impulse[rows_[k].contact]; p[0] > 0) apply_impulse(rows_[k], p);
+  });
+}
+
+/// Puts one contact right, and adds the violation that it showed.
+inline void LumpedContacts::solve(const Row& row, Vec<2>& p, double friction, const SolverOptions& options,
+                                  Violation& violation) {
+  const Vec<2> u = relative_velocity(row);
+  if (p[0] == 0 && u[0] >= 0) return;
+  Vec<2> solved{std::max(0.0, p[0] - u[0] * row.inverse_delassus), 0};
+  if (const double most = friction * solved[0]; most > 0)
+    solved[1] = std::clamp(p[1] - u[1] * row.inverse_delassus, -most, most);
+  const Vec<2> jump = row.delassus * (solved - p);
+  violation.add(dot(jump, jump), solved[0] > 0);
+  Vec<2> next = p + options.relaxation * (solved - p);
+  if (options.relaxation > 1) next = project_on_coulomb_cone(next, friction);
+  const Vec<2> dp = next - p;
+  p = next;
+  apply_impulse(row, dp);
 }
 
 Violation LumpedContacts::sweep(std::span<Vec<2>> impulse, std::span<const double> friction,
                                 const SolverOptions& options) {
+  std::vector<Violation> of_strip(strips_.count());
+  for_each_strip([&](int strip) {
+    Violation sum;
+    for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
+      const int c = rows_[k].contact;
+      solve(rows_[k], impulse[c], friction[c], options, sum);
+    }
+    of_strip[strip] = sum;
+  });
   Violation violation;
-  for (int c = 0; c < size(); ++c) {
-    const Row& row = rows_[c];
-    Vec<2>& p = impulse[c];
-    const Vec<2> u = relative_velocity(row);
-    if (p[0] == 0 && u[0] >= 0) continue;
-    Vec<2> solved{std::max(0.0, p[0] - u[0] / row.delassus), 0};
-    if (const double most = friction[c] * solved[0]; most > 0)
-      solved[1] = std::clamp(p[1] - u[1] / row.delassus, -most, most);
-    const Vec<2> jump = row.delassus * (solved - p);
-    violation.add(dot(jump, jump), solved[0] > 0);
-    Vec<2> next = p + options.relaxation * (solved - p);
-    if (options.relaxation > 1) next = project_on_coulomb_cone(next, friction[c]);
-    const Vec<2> dp = next - p;
-    p = next;
-    apply_impulse(row, dp);
-  }
+  for (const Violation& of_one : of_strip) violation += of_one;
   return violation;
 }
 

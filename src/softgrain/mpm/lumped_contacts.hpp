@@ -5,6 +5,7 @@
 
 #include "softgrain/contact/contact_system.hpp"
 #include "softgrain/contact/residual.hpp"
+#include "softgrain/mpm/contact_strips.hpp"
 #include "softgrain/mpm/outline_contacts.hpp"
 
 namespace softgrain {
@@ -15,35 +16,55 @@ namespace softgrain {
 /// had brought the outlines to where the contacts were found.
 class LumpedContacts {
  public:
+  struct Scratch;
   /// velocity: (outline vertices) [m/s], u_found when constructed, then changed by the caller and by
-  /// impulses; inverse_mass: (outline vertices) [m/kg]. Keeps a reference to the velocities.
-  LumpedContacts(std::span<const OutlineContact> contacts, std::span<const Wall<2>> walls,
-                 std::span<Vec<2>> velocity, std::span<const double> inverse_mass, double dt);
+  /// impulses; inverse_mass: (outline vertices) [m/kg]. Keeps references to the velocities and the scratch.
+  LumpedContacts(std::span<const OutlineContact> contacts, const OutlineState& outline,
+                 std::span<Vec<2>> velocity, std::span<const double> inverse_mass, Scratch& scratch);
 
   int size() const { return static_cast<int>(rows_.size()); }
   Mat<2> delassus_block(int contact) const {
-    return Mat<2>::diagonal({rows_[contact].delassus, rows_[contact].delassus});
+    const double W = row(contact).delassus;
+    return Mat<2>::diagonal({W, W});
   }
-  Vec<2> relative_velocity(int contact) const { return relative_velocity(rows_[contact]); }
-  void apply_impulse(int contact, const Vec<2>& dp) { apply_impulse(rows_[contact], dp); }
-  /// One pass of Gauss-Seidel. As W is a multiple of 1, a contact is solved by
+  Vec<2> relative_velocity(int contact) const;
+  void apply_impulse(int contact, const Vec<2>& dp);
+  /// The impulses of all contacts.
+  void apply_impulses(std::span<const Vec<2>> impulse);
+  /// One pass of Gauss-Seidel, first over the even strips, then over the odd ones. As W is a multiple of 1, a
+  /// contact is solved by
   ///   p_n = max(0, p_n - u_n/W),  p_t = p_t - u_t/W, cut to |p_t| <= mu p_n.
   Violation sweep(std::span<Vec<2>> impulse, std::span<const double> friction, const SolverOptions& options);
 
  private:
+  // per contact and sweep: reads 152 B in the order of memory, and five velocities
   struct Row {
-    int count = 1;                    // of vertices: the slave alone, or with four of a master
-    std::array<int, 5> vertex{};      // the slave, then the master's
-    std::array<double, 5> weight{1};  // 1, -w_k
-    std::array<double, 5> answer{};   // weight/m: velocity by a unit impulse
-    Vec<2> normal, offset;            // u = (n, t) . sum weight v + offset
-    double delassus = 0;
+    int contact = 0;
+    bool wall = false;
+    std::array<int, 5> vertex{};       // the slave, then, unless it faces a wall, the master's
+    std::array<double, 4> weight{};    // w_k
+    std::array<double, 5> mobility{};  // 1/m_slave, -w_k/m_k: velocity by a unit impulse
+    Vec<2> normal, offset;             // u = (n, t) . (v_slave - sum w_k v_k) + offset
+    double delassus = 0, inverse_delassus = 0;
   };
+  const Row& row(int contact) const { return rows_[strips_.place[contact]]; }
+  Row row_of(const OutlineContact& contact, const OutlineState& outline,
+             std::span<const double> inverse_mass) const;
   Vec<2> relative_velocity(const Row& row) const;
   void apply_impulse(const Row& row, const Vec<2>& dp);
+  void solve(const Row& row, Vec<2>& p, double friction, const SolverOptions& options, Violation& violation);
+  template <class Work>
+  void for_each_strip(const Work& work) const;
 
-  std::vector<Row> rows_;
+  std::vector<Row>& rows_;  // strip by strip
+  ContactStrips& strips_;
   std::span<Vec<2>> velocity_;
+};
+
+/// Memory kept from step to step.
+struct LumpedContacts::Scratch {
+  std::vector<Row> rows;
+  ContactStrips strips;
 };
 
 }  // namespace softgrain

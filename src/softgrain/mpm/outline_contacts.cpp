@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/cell_grid.hpp"
 
 namespace softgrain {
@@ -16,14 +17,18 @@ namespace {
 constexpr double largest_margin = 0.5;
 constexpr double skin_share = 0.5;
 
-/// Neighbour of a vertex along its own outline.
-int next_vertex(const SoftGrains& grains, int vertex) {
+/// Vertices that a thread takes at once.
+constexpr int part_size = 128;
+
+/// The vertices of one outline, in a ring.
+struct Ring {
+  int begin, end;
+  int next(int vertex) const { return vertex + 1 < end ? vertex + 1 : begin; }
+  int previous(int vertex) const { return vertex > begin ? vertex - 1 : end - 1; }
+};
+Ring ring_of(const SoftGrains& grains, int vertex) {
   const int grain = grains.grain_of_vertex(vertex);
-  return vertex + 1 < grains.outline_end(grain) ? vertex + 1 : grains.outline_begin(grain);
-}
-int previous_vertex(const SoftGrains& grains, int vertex) {
-  const int grain = grains.grain_of_vertex(vertex);
-  return vertex > grains.outline_begin(grain) ? vertex - 1 : grains.outline_end(grain) - 1;
+  return {grains.outline_begin(grain), grains.outline_end(grain)};
 }
 
 /// Mean distance of a grain's outline vertices when it was round [m].
@@ -37,12 +42,6 @@ struct Nearest {
   int grain, vertex;
   double distance_squared;
 };
-
-/// The span of an outline that starts at vertex `first`: it, the next one, and the neighbours of both.
-std::array<int, 4> span_from(const SoftGrains& grains, int first) {
-  const int second = next_vertex(grains, first);
-  return {previous_vertex(grains, first), first, second, next_vertex(grains, second)};
-}
 
 /// The curve of a span as a polynomial, c(xi) = a + xi (b + xi (c + xi d)).
 class SpanCurve {
@@ -79,21 +78,21 @@ class SpanCurve {
   Vec<2> start_, end_, b_, c_, d_;
 };
 
-/// The span of the master's outline that a slave at x faces, next to the vertex nearest to it.
-std::array<int, 4> facing_span(const SoftGrains& grains, std::span<const Vec<2>> position, const Vec<2>& x,
-                               int nearest) {
-  const std::array<int, 4> span = span_from(grains, nearest);
-  const Vec<2> tangent = position[span[2]] - position[span[0]];
-  return dot(x - position[nearest], tangent) < 0 ? span_from(grains, previous_vertex(grains, nearest)) : span;
+/// The vertex of a master's outline where the segment starts that x faces, next to the vertex nearest to x.
+int facing_segment(const Ring& ring, std::span<const Vec<2>> position, const Vec<2>& x, int nearest) {
+  const int before = ring.previous(nearest);
+  const Vec<2> tangent = position[ring.next(nearest)] - position[before];
+  return dot(x - position[nearest], tangent) < 0 ? before : nearest;
 }
 
-/// True if a point is surely more than `margin` outside a span, whose curve bulges by less than a quarter of
-/// its chord.
-bool surely_outside(std::span<const Vec<2>> position, const std::array<int, 4>& span, const Vec<2>& x,
-                    double margin) {
-  const Vec<2> chord = position[span[2]] - position[span[1]];
-  const double length = norm(chord);
-  return -dot(x - position[span[1]], perpendicular(chord)) > (margin + length / 4) * length;
+/// True if x is surely more than `margin` outside the curve between two neighbours, which bulges by less than
+/// a quarter of its chord.
+bool surely_outside(const Vec<2>& start, const Vec<2>& end, const Vec<2>& x, double margin) {
+  const Vec<2> chord = end - start;
+  const double square = dot(chord, chord);
+  // distance times |chord|, beyond the bulge, against margin times |chord|
+  const double beyond = -dot(x - start, perpendicular(chord)) - square / 4;
+  return beyond > 0 && beyond * beyond > margin * margin * square;
 }
 
 /// The place of a span that a slave faces.
@@ -119,21 +118,41 @@ OutlineContact wall_contact(const OutlineState& state, int slave, int wall_index
   return contact;
 }
 
-/// The vertex of a master's outline nearest to `slave`, walking downhill from `start`.
-int nearest_vertex(const SoftGrains& grains, std::span<const Vec<2>> position, int slave, int start) {
+/// The vertex of a master's outline nearest to x, walking downhill from `start`.
+int nearest_vertex(const Ring& ring, std::span<const Vec<2>> position, const Vec<2>& x, int start) {
   const auto distance_squared = [&](int w) {
-    const Vec<2> d = position[w] - position[slave];
+    const Vec<2> d = position[w] - x;
     return dot(d, d);
   };
   int nearest = start;
   double least = distance_squared(start);
   for (;;) {
-    const int before = previous_vertex(grains, nearest), after = next_vertex(grains, nearest);
+    const int before = ring.previous(nearest), after = ring.next(nearest);
     const double d_before = distance_squared(before), d_after = distance_squared(after);
     if (least <= d_before && least <= d_after) return nearest;
     nearest = d_before < d_after ? before : after;
     least = std::min(d_before, d_after);
   }
+}
+
+/// The vertex of each grain within `reach` of vertex v that is nearest to it, sorted by grain.
+void find_near(const SoftGrains& grains, std::span<const Vec<2>> position, const CellGrid<2>& grid,
+               double reach, int v, std::vector<Nearest>& near) {
+  near.clear();
+  grid.for_each_neighbour(v, [&](int w) {
+    const int other = grains.grain_of_vertex(w);
+    if (other == grains.grain_of_vertex(v)) return;
+    const Vec<2> d = position[w] - position[v];
+    const double distance_squared = dot(d, d);
+    if (distance_squared > reach * reach) return;
+    const auto found =
+        std::find_if(near.begin(), near.end(), [&](const Nearest& n) { return n.grain == other; });
+    if (found == near.end())
+      near.push_back({other, w, distance_squared});
+    else if (distance_squared < found->distance_squared)
+      *found = {other, w, distance_squared};
+  });
+  std::sort(near.begin(), near.end(), [](const Nearest& a, const Nearest& b) { return a.grain < b.grain; });
 }
 
 }  // namespace
@@ -143,71 +162,78 @@ std::array<double, 4> curve_weights(double xi) {
   return {-xi / 2 + a - b / 2, 1 - 2.5 * a + 1.5 * b, xi / 2 + 2 * a - 1.5 * b, (b - a) / 2};
 }
 
-bool OutlineNeighbours::moved_far(const SoftGrains& grains, const OutlineState& state) const {
+bool OutlineNeighbours::moved_far(const OutlineState& state) {
   if (reference_.size() != state.position.size()) return true;
-  double largest = 0;
-  for (int v = 0; v < grains.outline_size(); ++v) {
-    const Vec<2> d = state.position[v] - reference_[v];
-    largest = std::max(largest, dot(d, d));
-  }
-  return largest > (skin_share * segment_ / 2) * (skin_share * segment_ / 2);
+  const double allowed = skin_share * segment_ / 2;
+  parallel_for(static_cast<int>(parts_.size()), [&](int k) {
+    double largest = 0;
+    for (int v = parts_[k].begin; v < parts_[k].end; ++v) {
+      const Vec<2> d = state.position[v] - reference_[v];
+      largest = std::max(largest, dot(d, d));
+    }
+    parts_[k].moved_far = largest > allowed * allowed;
+  });
+  return std::ranges::any_of(parts_, &Part::moved_far);
 }
 
 void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineState& state) {
   reference_ = state.position;
-  candidates_.clear();
+  parts_.resize((grains.outline_size() + part_size - 1) / part_size);
   segment_ = 0;
   for (int g = 0; g < grains.size(); ++g) segment_ += segment_length(grains, g) / grains.size();
   double longest = 0;
   for (int v = 0; v < grains.outline_size(); ++v)
-    longest = std::max(longest, norm(state.position[next_vertex(grains, v)] - state.position[v]));
+    longest = std::max(longest, norm(state.position[ring_of(grains, v).next(v)] - state.position[v]));
   const double reach = longest + (largest_margin + skin_share) * segment_;
   const CellGrid<2> grid(state.position, reach);
-  std::vector<Nearest> near;
-  for (int v = 0; v < grains.outline_size(); ++v) {
-    const int grain = grains.grain_of_vertex(v);
-    near.clear();
-    grid.for_each_neighbour(v, [&](int w) {
-      const int other = grains.grain_of_vertex(w);
-      if (other == grain) return;
-      const Vec<2> d = state.position[w] - state.position[v];
-      const double distance_squared = dot(d, d);
-      if (distance_squared > reach * reach) return;
-      const auto found =
-          std::find_if(near.begin(), near.end(), [&](const Nearest& n) { return n.grain == other; });
-      if (found == near.end())
-        near.push_back({other, w, distance_squared});
-      else if (distance_squared < found->distance_squared)
-        *found = {other, w, distance_squared};
-    });
-    std::sort(near.begin(), near.end(), [](const Nearest& a, const Nearest& b) { return a.grain < b.grain; });
-    for (const Nearest& nearest : near) candidates_.push_back({v, nearest.vertex});
+  parallel_for(static_cast<int>(parts_.size()), [&](int k) {
+    Part& part = parts_[k];
+    part.begin = k * part_size;
+    part.end = std::min(part.begin + part_size, grains.outline_size());
+    part.candidates.clear();
+    std::vector<Nearest> near;
+    for (int v = part.begin; v < part.end; ++v) {
+      find_near(grains, state.position, grid, reach, v, near);
+      for (const Nearest& nearest : near) part.candidates.push_back({v, nearest.vertex});
+    }
+  });
+}
+
+void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineState& state, double margin,
+                                      Part& part) const {
+  part.contacts.clear();
+  auto candidate = part.candidates.begin();
+  for (int v = part.begin; v < part.end; ++v) {
+    const Vec<2>& x = state.position[v];
+    for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
+      const Wall<2>& wall = state.walls[w];
+      if (dot(x - wall.point, wall.normal) < margin) part.contacts.push_back(wall_contact(state, v, w));
+    }
+    for (; candidate != part.candidates.end() && candidate->vertex == v; ++candidate) {
+      const Ring ring = ring_of(grains, candidate->nearest);
+      candidate->nearest = nearest_vertex(ring, state.position, x, candidate->nearest);
+      const Vec<2> d = x - state.position[candidate->nearest];
+      if (dot(d, d) > 9 * segment_ * segment_) continue;
+      const int start = facing_segment(ring, state.position, x, candidate->nearest), end = ring.next(start);
+      if (surely_outside(state.position[start], state.position[end], x, margin)) continue;
+      const OutlineContact contact =
+          curve_contact(state, v, {ring.previous(start), start, end, ring.next(end)});
+      if (contact.gap < margin) part.contacts.push_back(contact);
+    }
   }
 }
 
 std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, const OutlineState& state,
                                                       double margin) {
   assert(margin <= largest_margin);
-  if (moved_far(grains, state)) find_candidates(grains, state);
-  margin *= segment_;
+  if (moved_far(state)) find_candidates(grains, state);
+  parallel_for(static_cast<int>(parts_.size()),
+               [&](int k) { find_contacts(grains, state, margin * segment_, parts_[k]); });
+  std::size_t count = 0;
+  for (const Part& part : parts_) count += part.contacts.size();
   std::vector<OutlineContact> contacts;
-  auto candidate = candidates_.begin();
-  for (int v = 0; v < grains.outline_size(); ++v) {
-    for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
-      const Wall<2>& wall = state.walls[w];
-      if (dot(state.position[v] - wall.point, wall.normal) < margin)
-        contacts.push_back(wall_contact(state, v, w));
-    }
-    for (; candidate != candidates_.end() && candidate->vertex == v; ++candidate) {
-      candidate->nearest = nearest_vertex(grains, state.position, v, candidate->nearest);
-      const Vec<2> d = state.position[v] - state.position[candidate->nearest];
-      if (dot(d, d) > 9 * segment_ * segment_) continue;
-      const auto span = facing_span(grains, state.position, state.position[v], candidate->nearest);
-      if (surely_outside(state.position, span, state.position[v], margin)) continue;
-      const OutlineContact contact = curve_contact(state, v, span);
-      if (contact.gap < margin) contacts.push_back(contact);
-    }
-  }
+  contacts.reserve(count);
+  for (const Part& part : parts_) contacts.insert(contacts.end(), part.contacts.begin(), part.contacts.end());
   return contacts;
 }
 

@@ -57,24 +57,17 @@ double SoftGrains::mass(int grain) const {
 
 void SoftGrains::gather_outline(std::vector<Vec<2>>& position) const {
   position.resize(outline_size());
-  for (const GrainBatch& batch : batches) {
-    const ReferenceGrid& grid = batch.topology->grid;
-    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) {
-      Vec<2>* x = &position[outline_begin_[batch.grain[lane]]];
-      for (int i = grid.outline_begin; i < grid.nodes(); ++i)
-        x[i - grid.outline_begin] = {batch.position[i][0][lane], batch.position[i][1][lane]};
-    }
-  }
+  for (const GrainBatch& batch : batches)
+    for_each_vertex(batch, [&](int v, int i, int lane) {
+      position[v] = {batch.position[i][0][lane], batch.position[i][1][lane]};
+    });
 }
 
 void SoftGrains::scatter_outline(std::span<const Vec<2>> value, const GrainBatch& batch,
                                  WideVectors& nodes) const {
-  const ReferenceGrid& grid = batch.topology->grid;
-  for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) {
-    const Vec<2>* v = &value[outline_begin_[batch.grain[lane]]];
-    for (int i = grid.outline_begin; i < grid.nodes(); ++i)
-      for (int d = 0; d < 2; ++d) nodes[i][d].set(lane, nodes[i][d][lane] + v[i - grid.outline_begin][d]);
-  }
+  for_each_vertex(batch, [&](int v, int i, int lane) {
+    for (int d = 0; d < 2; ++d) nodes[i][d].set(lane, nodes[i][d][lane] + value[v][d]);
+  });
 }
 
 Vec<2> SoftGrains::node_position(int grain, int node) const {

@@ -62,6 +62,14 @@ class SoftGrains {
   int outline_end(int grain) const { return outline_begin_[grain + 1]; }
   int outline_size() const { return outline_begin_.back(); }
   int grain_of_vertex(int vertex) const { return grain_of_vertex_[vertex]; }
+  /// visit(vertex, node, lane) for all outline vertices of the grains of a batch.
+  template <class Visit>
+  void for_each_vertex(const GrainBatch& batch, Visit&& visit) const {
+    const ReferenceGrid& grid = batch.topology->grid;
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+      for (int i = grid.outline_begin, v = outline_begin_[batch.grain[lane]]; i < grid.nodes(); ++i, ++v)
+        visit(v, i, lane);
+  }
   /// x of all outline vertices [m], from the batches.
   void gather_outline(std::vector<Vec<2>>& position) const;
   /// Values of vertices (force, increment) added to the nodes of a batch.

@@ -1,6 +1,6 @@
 #include "softgrain/mpm/topology.hpp"
 
-#include <array>
+#include <span>
 
 #include "softgrain/geometry/polygon.hpp"
 
@@ -15,6 +15,18 @@ BlockPattern pattern_of(const ReferenceGrid& grid) {
   return {grid.nodes(), edges, grid.outline_nodes()};
 }
 
+CellShape shape_of(std::span<const MaterialPoint, 4> points) {
+  const auto L = [&](int a, int b) {
+    double sum = 0;
+    for (const MaterialPoint& p : points) sum += p.volume * dot(p.gradient[a], p.gradient[b]);
+    return sum;
+  };
+  CellShape shape{
+      .L_11 = L(1, 1), .L_12 = L(1, 2), .L_13 = L(1, 3), .L_22 = L(2, 2), .L_23 = L(2, 3), .L_33 = L(3, 3)};
+  for (std::size_t p = 0; p < 4; ++p) shape.inverse_area[p] = 1 / (4 * points[p].volume);
+  return shape;
+}
+
 }  // namespace
 
 Topology::Topology(ReferenceGrid reference_grid)
@@ -25,6 +37,8 @@ Topology::Topology(ReferenceGrid reference_grid)
       pattern(pattern_of(grid)) {
   for (std::size_t p = 0; p < points.size(); ++p)
     for (int a = 0; a < 4; ++a) node_volume[grid.cell[p / 4][a]] += points[p].shape[a] * points[p].volume;
+  for (std::size_t p = 0; p < points.size(); p += 4)
+    cell_shapes.push_back(shape_of(std::span(points).subspan(p).first<4>()));
   for (const auto& cell : grid.cell)
     for (int a = 0; a < 4; ++a)
       for (int b = 0; b <= a; ++b)

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "softgrain/math/block_cholesky.hpp"
@@ -12,6 +13,13 @@ struct CellBlock {
   bool transposed = false;  ///< it holds K_ab^T
 };
 
+/// What the reference shape of a cell means to the force of laws with P = mu F + h(J) cof F, see
+/// CellInLanes: L_ab = sum_p V_p dN_a/dX . dN_b/dX, symmetric and with rows that sum to zero.
+struct CellShape {
+  double L_11 = 0, L_12 = 0, L_13 = 0, L_22 = 0, L_23 = 0, L_33 = 0;
+  std::array<double, 4> inverse_area{};  ///< 1/(4 V_p) [1/R^2] of its points
+};
+
 /// All that grains of one shape share, in units of their radius: made once, never changed.
 struct Topology {
   /// Takes over the grid; finds points, volumes, and the symbolic factorisation with the outline last.
@@ -19,8 +27,9 @@ struct Topology {
 
   ReferenceGrid grid;
   std::vector<MaterialPoint> points;  ///< (4 cells)
-  std::vector<double> node_volume;    ///< (nodes) sum_p N_i V_p [R^2]: the lumped mass over rho R^2
-  double area = 0;                    ///< of the outline [R^2]
+  std::vector<CellShape> cell_shapes;
+  std::vector<double> node_volume;  ///< (nodes) sum_p N_i V_p [R^2]: the lumped mass over rho R^2
+  double area = 0;                  ///< of the outline [R^2]
   BlockPattern pattern;
   std::vector<CellBlock>
       cell_blocks;  ///< (10 cells): the pairs (a, b), b <= a, of the four nodes of each cell

@@ -45,6 +45,9 @@ TEST_CASE("internal force is the derivative of the elastic energy") {
     CAPTURE(setting.mean_dilatation);
     SoftGrains grains = ten_grains(setting);
     test::shake(grains, 0.05);
+    test::move_nodes(grains, [](int lane, const Vec<2>& x) {  // J from 0.5 to 2 in the last lanes
+      return Vec<2>{x[0], (lane < 5 ? 1 : lane == 5 ? 2 : lane == 6 ? 0.5 : 0.8) * x[1]};
+    });
     GrainBatch& batch = grains.batches[0];
     WideVectors force;
     REQUIRE(internal_force(grains, batch, force) == 0);

@@ -120,6 +120,26 @@ TEST_CASE("on outlines with short and long segments and sharp bends, too, vertic
   CHECK(met > 50);
 }
 
+TEST_CASE("the contacts of many grains are those of each pair of them") {
+  std::vector<GrainPlacement> placed;  // on a square lattice, overlapping, 24 vertices each
+  for (int g = 0; g < 16; ++g)
+    placed.push_back(test::placed(test::disk(6), 1, {1.97 * (g % 4), 1.97 * (g / 4)}, {}, 0.1 * g));
+  const auto detect = [&](std::vector<GrainPlacement> some) {
+    const SoftGrains grains(std::move(some), make_law("neo_hookean", 1, 0.3), 1, false);
+    return OutlineNeighbours().detect(grains, state_of(grains));
+  };
+  using Pair = std::array<int, 2>;                      // the slave's and the master's grain
+  std::map<Pair, std::map<int, double>> gap, expected;  // by the slave's place on its outline
+  for (const OutlineContact& c : detect(placed))
+    gap[{c.vertex / 24, c.master[0] / 24}][c.vertex % 24] = c.gap;
+  for (int a = 0; a < 16; ++a)
+    for (int b = a + 1; b < 16; ++b)
+      for (const OutlineContact& c : detect({placed[a], placed[b]}))
+        expected[c.vertex < 24 ? Pair{a, b} : Pair{b, a}][c.vertex % 24] = c.gap;
+  CHECK(gap.size() == 48);  // 24 pairs touch, both ways
+  CHECK(gap == expected);
+}
+
 TEST_CASE("a grain that rolls round another finds the same contacts as a search from the beginning") {
   const std::vector<GrainPlacement> placed{test::placed(test::disk(3), 1, {0, 0}),
                                            test::placed(test::disk(5), 1, {1.99, 0})};
