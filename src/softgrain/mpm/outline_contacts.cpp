@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/cell_grid.hpp"
 
 namespace softgrain {
@@ -15,6 +16,9 @@ namespace {
 // skin.
 constexpr double largest_margin = 0.5;
 constexpr double skin_share = 0.5;
+
+/// Vertices that a thread takes at once.
+constexpr int part_size = 128;
 
 /// Neighbour of a vertex along its own outline.
 int next_vertex(const SoftGrains& grains, int vertex) {
@@ -136,6 +140,26 @@ int nearest_vertex(const SoftGrains& grains, std::span<const Vec<2>> position, i
   }
 }
 
+/// The vertex of each grain within `reach` of vertex v that is nearest to it, sorted by grain.
+void find_near(const SoftGrains& grains, std::span<const Vec<2>> position, const CellGrid<2>& grid,
+               double reach, int v, std::vector<Nearest>& near) {
+  near.clear();
+  grid.for_each_neighbour(v, [&](int w) {
+    const int other = grains.grain_of_vertex(w);
+    if (other == grains.grain_of_vertex(v)) return;
+    const Vec<2> d = position[w] - position[v];
+    const double distance_squared = dot(d, d);
+    if (distance_squared > reach * reach) return;
+    const auto found =
+        std::find_if(near.begin(), near.end(), [&](const Nearest& n) { return n.grain == other; });
+    if (found == near.end())
+      near.push_back({other, w, distance_squared});
+    else if (distance_squared < found->distance_squared)
+      *found = {other, w, distance_squared};
+  });
+  std::sort(near.begin(), near.end(), [](const Nearest& a, const Nearest& b) { return a.grain < b.grain; });
+}
+
 }  // namespace
 
 std::array<double, 4> curve_weights(double xi) {
@@ -143,19 +167,23 @@ std::array<double, 4> curve_weights(double xi) {
   return {-xi / 2 + a - b / 2, 1 - 2.5 * a + 1.5 * b, xi / 2 + 2 * a - 1.5 * b, (b - a) / 2};
 }
 
-bool OutlineNeighbours::moved_far(const SoftGrains& grains, const OutlineState& state) const {
+bool OutlineNeighbours::moved_far(const OutlineState& state) {
   if (reference_.size() != state.position.size()) return true;
-  double largest = 0;
-  for (int v = 0; v < grains.outline_size(); ++v) {
-    const Vec<2> d = state.position[v] - reference_[v];
-    largest = std::max(largest, dot(d, d));
-  }
-  return largest > (skin_share * segment_ / 2) * (skin_share * segment_ / 2);
+  const double allowed = skin_share * segment_ / 2;
+  parallel_for(static_cast<int>(parts_.size()), [&](int k) {
+    double largest = 0;
+    for (int v = parts_[k].begin; v < parts_[k].end; ++v) {
+      const Vec<2> d = state.position[v] - reference_[v];
+      largest = std::max(largest, dot(d, d));
+    }
+    parts_[k].moved_far = largest > allowed * allowed;
+  });
+  return std::ranges::any_of(parts_, &Part::moved_far);
 }
 
 void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineState& state) {
   reference_ = state.position;
-  candidates_.clear();
+  parts_.resize((grains.outline_size() + part_size - 1) / part_size);
   segment_ = 0;
   for (int g = 0; g < grains.size(); ++g) segment_ += segment_length(grains, g) / grains.size();
   double longest = 0;
@@ -163,51 +191,52 @@ void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineS
     longest = std::max(longest, norm(state.position[next_vertex(grains, v)] - state.position[v]));
   const double reach = longest + (largest_margin + skin_share) * segment_;
   const CellGrid<2> grid(state.position, reach);
-  std::vector<Nearest> near;
-  for (int v = 0; v < grains.outline_size(); ++v) {
-    const int grain = grains.grain_of_vertex(v);
-    near.clear();
-    grid.for_each_neighbour(v, [&](int w) {
-      const int other = grains.grain_of_vertex(w);
-      if (other == grain) return;
-      const Vec<2> d = state.position[w] - state.position[v];
-      const double distance_squared = dot(d, d);
-      if (distance_squared > reach * reach) return;
-      const auto found =
-          std::find_if(near.begin(), near.end(), [&](const Nearest& n) { return n.grain == other; });
-      if (found == near.end())
-        near.push_back({other, w, distance_squared});
-      else if (distance_squared < found->distance_squared)
-        *found = {other, w, distance_squared};
-    });
-    std::sort(near.begin(), near.end(), [](const Nearest& a, const Nearest& b) { return a.grain < b.grain; });
-    for (const Nearest& nearest : near) candidates_.push_back({v, nearest.vertex});
-  }
+  parallel_for(static_cast<int>(parts_.size()), [&](int k) {
+    Part& part = parts_[k];
+    part.begin = k * part_size;
+    part.end = std::min(part.begin + part_size, grains.outline_size());
+    part.candidates.clear();
+    std::vector<Nearest> near;
+    for (int v = part.begin; v < part.end; ++v) {
+      find_near(grains, state.position, grid, reach, v, near);
+      for (const Nearest& nearest : near) part.candidates.push_back({v, nearest.vertex});
+    }
+  });
 }
 
-std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, const OutlineState& state,
-                                                      double margin) {
-  assert(margin <= largest_margin);
-  if (moved_far(grains, state)) find_candidates(grains, state);
-  margin *= segment_;
-  std::vector<OutlineContact> contacts;
-  auto candidate = candidates_.begin();
-  for (int v = 0; v < grains.outline_size(); ++v) {
+void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineState& state, double margin,
+                                      Part& part) const {
+  part.contacts.clear();
+  auto candidate = part.candidates.begin();
+  for (int v = part.begin; v < part.end; ++v) {
     for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
       const Wall<2>& wall = state.walls[w];
       if (dot(state.position[v] - wall.point, wall.normal) < margin)
-        contacts.push_back(wall_contact(state, v, w));
+        part.contacts.push_back(wall_contact(state, v, w));
     }
-    for (; candidate != candidates_.end() && candidate->vertex == v; ++candidate) {
+    for (; candidate != part.candidates.end() && candidate->vertex == v; ++candidate) {
       candidate->nearest = nearest_vertex(grains, state.position, v, candidate->nearest);
       const Vec<2> d = state.position[v] - state.position[candidate->nearest];
       if (dot(d, d) > 9 * segment_ * segment_) continue;
       const auto span = facing_span(grains, state.position, state.position[v], candidate->nearest);
       if (surely_outside(state.position, span, state.position[v], margin)) continue;
       const OutlineContact contact = curve_contact(state, v, span);
-      if (contact.gap < margin) contacts.push_back(contact);
+      if (contact.gap < margin) part.contacts.push_back(contact);
     }
   }
+}
+
+std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, const OutlineState& state,
+                                                      double margin) {
+  assert(margin <= largest_margin);
+  if (moved_far(state)) find_candidates(grains, state);
+  parallel_for(static_cast<int>(parts_.size()),
+               [&](int k) { find_contacts(grains, state, margin * segment_, parts_[k]); });
+  std::size_t count = 0;
+  for (const Part& part : parts_) count += part.contacts.size();
+  std::vector<OutlineContact> contacts;
+  contacts.reserve(count);
+  for (const Part& part : parts_) contacts.insert(contacts.end(), part.contacts.begin(), part.contacts.end());
   return contacts;
 }
 

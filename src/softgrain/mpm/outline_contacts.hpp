@@ -50,12 +50,20 @@ class OutlineNeighbours {
   struct Candidate {
     int vertex = 0, nearest = 0;
   };
-  bool moved_far(const SoftGrains& grains, const OutlineState& state) const;
+  /// Vertices begin .. end - 1, which one thread takes at once.
+  struct Part {
+    int begin = 0, end = 0;
+    std::vector<Candidate> candidates;     // sorted by (vertex, master grain)
+    std::vector<OutlineContact> contacts;  // of the last call
+    bool moved_far = false;
+  };
+  bool moved_far(const OutlineState& state);
   void find_candidates(const SoftGrains& grains, const OutlineState& state);
+  void find_contacts(const SoftGrains& grains, const OutlineState& state, double margin, Part& part) const;
 
-  std::vector<Candidate> candidates_;  // sorted by (vertex, master grain)
-  std::vector<Vec<2>> reference_;      // positions when they were found
-  double segment_ = 0;                 // mean length of a segment of the round grains [m]
+  std::vector<Part> parts_;        // all vertices, in order
+  std::vector<Vec<2>> reference_;  // positions when the candidates were found
+  double segment_ = 0;             // mean length of a segment of the round grains [m]
 };
 
 /// Gap of a contact when its bodies have moved a little since it was found [m].
