@@ -42,7 +42,7 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
   for (const GrainBatch& batch : grains.batches) {
     matrix_.emplace_back(batch.topology->pattern);
     const std::size_t width = 2 * batch.topology->grid.outline_nodes();
-    compliance_.emplace_back(width * width);
+    compliance_.emplace_back(Wide::size * width * width);
   }
   half_solved_.resize(grains.batches.size());
   force_.resize(grains.batches.size());
@@ -204,8 +204,7 @@ bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   impulse = carried_impulses(grains, contacts, impulse, found);
   contacts = std::move(found);
   ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt, scratch_);
-  for (int c = 0; c < system.size(); ++c)
-    if (impulse[c][0] > 0) system.apply_impulse(c, impulse[c]);
+  system.apply_impulses(impulse);
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
   solver.tolerance = contact_share * options.tolerance;
