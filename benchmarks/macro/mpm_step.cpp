@@ -99,7 +99,6 @@ void measure_parts(Results& results, const std::string& name, ImplicitDynamics& 
       A[b].add(i, i, {m, 0.0, 0.0, m});
     }
   });
-  const auto numbers = [](WideVectors& v) { return std::span<Wide>(&v[0][0], 2 * v.size()); };
   WideVectors kept;
   OutlineState state{.position = {}, .start = {}, .walls = dynamics.walls, .dt = implicit_dt};
   grains.gather_outline(state.position);
