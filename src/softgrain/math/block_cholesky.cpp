@@ -1,43 +1,12 @@
 #include "softgrain/math/block_cholesky.hpp"
 
 #include <algorithm>
-#include <cassert>
-#include <cmath>
-#include <numeric>
-#include <set>
 
 namespace softgrain {
 namespace {
 
 template <class Entry>
 using Block = std::array<Entry, 4>;
-
-/// Minimum degree on the first nodes, then the kept ones; `graph` becomes the pattern of the factor. Returns
-/// the nodes in the order of elimination.
-std::vector<int> eliminate(std::vector<std::set<int>>& graph, int kept) {
-  const int n = static_cast<int>(graph.size());
-  std::vector<int> sequence;
-  std::vector<char> done(n, 0);
-  std::vector<std::set<int>> below(n);
-  for (int step = 0; step < n; ++step) {
-    int next = n - kept + (step - (n - kept));
-    if (step < n - kept) {
-      next = -1;
-      for (int i = 0; i < n - kept; ++i)
-        if (done[i] == 0 && (next < 0 || graph[i].size() < graph[next].size())) next = i;
-    }
-    for (const int i : graph[next]) {
-      graph[i].erase(next);
-      for (const int j : graph[next])
-        if (i != j) graph[i].insert(j);
-    }
-    done[next] = 1;
-    below[next] = graph[next];
-    sequence.push_back(next);
-  }
-  graph = std::move(below);
-  return sequence;
-}
 
 /// C -= A B^T for 2 x 2 blocks, C by its numbers: these stay in registers, arrays do not.
 template <class Entry>
@@ -68,44 +37,6 @@ inline Two<Entry> minus_product(const Two<Entry>& c, const Entry& a, const Two<E
 }
 
 }  // namespace
-
-BlockPattern::BlockPattern(int nodes, std::span<const std::array<int, 2>> edges, int kept)
-    : kept_(kept), order_(nodes) {
-  std::vector<std::set<int>> graph(nodes);
-  for (const auto& [i, j] : edges) {
-    if (i == j) continue;
-    graph[i].insert(j);
-    graph[j].insert(i);
-  }
-  const std::vector<int> sequence = eliminate(graph, kept);
-  for (int k = 0; k < nodes; ++k) order_[sequence[k]] = k;
-  column_begin_.push_back(0);
-  std::vector<std::vector<int>> left(nodes);
-  for (int k = 0; k < nodes; ++k) {
-    std::vector<int> rows{k};
-    for (const int i : graph[sequence[k]]) rows.push_back(order_[i]);
-    std::sort(rows.begin() + 1, rows.end());
-    for (const int i : rows) {
-      if (i != k) left[i].push_back(blocks());
-      row_.push_back(i);
-      column_of_.push_back(k);
-    }
-    column_begin_.push_back(blocks());
-  }
-  left_begin_.push_back(0);
-  for (const auto& list : left) {
-    left_.insert(left_.end(), list.begin(), list.end());
-    left_begin_.push_back(static_cast<int>(left_.size()));
-  }
-}
-
-int BlockPattern::block(int node_i, int node_j) const {
-  const int column = std::min(order_[node_i], order_[node_j]), row = std::max(order_[node_i], order_[node_j]);
-  const auto begin = row_.begin() + column_begin_[column], end = row_.begin() + column_begin_[column + 1];
-  const auto found = std::lower_bound(begin, end, row);
-  assert(found != end && *found == row);
-  return static_cast<int>(found - row_.begin());
-}
 
 BatchedCholesky::BatchedCholesky(const BlockPattern& pattern) : pattern_(pattern), place_(pattern.nodes()) {}
 
@@ -141,8 +72,7 @@ unsigned BatchedCholesky::factor() {
 }
 
 /// How many of the blocks L_kj from left_[l] on, at most four, are in columns j, j + 1, ... that have entries
-/// in the same rows from k on. If column j has an entry in row j + 1, the rows of j below it are rows of j
-/// + 1.
+/// in the same rows from k on. Where column j has an entry in row j + 1, its rows below are rows of j + 1.
 int BatchedCholesky::alike_columns(int l) const {
   const std::vector<int>&begin = pattern_.column_begin_, &row = pattern_.row_, &left = pattern_.left_;
   const int last = static_cast<int>(left.size()) - 1;
@@ -156,7 +86,7 @@ int BatchedCholesky::alike_columns(int l) const {
 }
 
 /// A_ik -= sum_j L_ij L_kj^T over `count` columns j with entries in the same rows; first: their blocks L_kj.
-/// If `offset` > 0, also A_i(k+1), whose blocks are so far behind those of A_ik.
+/// With `pair`, also A_i(k+1), whose blocks are `offset` behind those of A_ik.
 template <int count, bool pair, class Entry>
 void BatchedCholesky::subtract_columns(Block<Entry>* value, const int* first, int offset) const {
   std::array<const Block<Entry>*, count> L;
@@ -197,39 +127,47 @@ void BatchedCholesky::subtract_columns(Block<Entry>* value, const int* first, in
     subtract_columns<1, pair>(value, first, offset);
 }
 
-/// Left-looking by columns. A diagonal block holds {1/l11, -, l21, 1/l22} of its 2 x 2 factor.
+/// A_ik -= sum_j L_ij L_kj^T. With `pair`, also A_i(k+1) of the columns j that reach row k + 1; with
+/// `second`, k was such a k + 1, and only what was left out is to be done.
+template <class Entry>
+void BatchedCholesky::subtract_left(Block<Entry>* value, int k, bool pair, bool second) const {
+  const std::vector<int>&begin = pattern_.column_begin_, &row = pattern_.row_, &left = pattern_.left_;
+  const int last = pattern_.left_begin_[k + 1];
+  const auto column = [&](int l) { return pattern_.column_of_[left[l]]; };
+  const auto done = [&](int l) { return second && column(l) < k - 1 && row[left[l] - 1] == k - 1; };
+  for (int l = pattern_.left_begin_[k]; l < last;) {
+    if (done(l)) {
+      ++l;
+      continue;
+    }
+    int alike = std::min(alike_columns(l), last - l);
+    for (int m = 1; m < alike; ++m)
+      if (done(l + m)) alike = m;
+    if (alike == 3) alike = 2;
+    const bool reaches = left[l] + 1 < begin[column(l) + 1] && row[left[l] + 1] == k + 1;
+    if (pair && reaches)
+      subtract_columns<true>(value, &left[l], alike, begin[k + 1] - begin[k] - 1);
+    else
+      subtract_columns<false>(value, &left[l], alike, 0);
+    l += alike;
+  }
+}
+
+/// Left-looking by columns, two at once where the second has entries in the rows of the first. A diagonal
+/// block holds {1/l11, -, l21, 1/l22} of its 2 x 2 factor.
 template <class Entry>
 unsigned BatchedCholesky::factor(Store<Entry>& store) {
   const std::vector<int>&begin = pattern_.column_begin_, &row = pattern_.row_;
-  const std::vector<int>&left_begin = pattern_.left_begin_, &left = pattern_.left_;
   std::vector<Block<Entry>>& value = store.value;
   const Entry one(Wide(1.0));
   unsigned failed = 0;
   bool second = false;
   for (int k = 0; k < pattern_.nodes(); ++k) {
+    const int below = begin[k + 1] - begin[k] - 1;
     for (int s = begin[k]; s < begin[k + 1]; ++s) place_[row[s]] = s;
-    // A_ik -= sum_j L_ij L_kj^T, and of k + 1 too if it has entries in the same rows
-    const bool pair = !second && begin[k] + 1 < begin[k + 1] && row[begin[k] + 1] == k + 1 &&
-                      begin[k + 2] - begin[k + 1] == begin[k + 1] - begin[k] - 1;
-    const auto done = [&](int l) {
-      return second && pattern_.column_of_[left[l]] < k - 1 && row[left[l] - 1] == k - 1;
-    };
-    for (int l = left_begin[k]; l < left_begin[k + 1];) {
-      if (done(l)) {
-        ++l;
-        continue;
-      }
-      int alike = std::min(alike_columns(l), left_begin[k + 1] - l);
-      for (int m = 1; m < alike; ++m)
-        if (done(l + m)) alike = m;
-      if (alike == 3) alike = 2;
-      const int end = begin[pattern_.column_of_[left[l]] + 1];
-      if (pair && left[l] + 1 < end && row[left[l] + 1] == k + 1)
-        subtract_columns<true>(value.data(), &left[l], alike, begin[k + 1] - begin[k] - 1);
-      else
-        subtract_columns<false>(value.data(), &left[l], alike, 0);
-      l += alike;
-    }
+    const bool pair =
+        !second && below > 0 && row[begin[k] + 1] == k + 1 && begin[k + 2] - begin[k + 1] == below;
+    subtract_left(value.data(), k, pair, second);
     second = pair;
     Block<Entry>& diagonal = value[begin[k]];
     const Entry l11 = sqrt(diagonal[0]), r11 = one / l11, l21 = diagonal[2] * r11;

@@ -82,6 +82,8 @@ class BatchedCholesky {
   template <class Entry>
   unsigned factor(Store<Entry>& store);
   int alike_columns(int l) const;
+  template <class Entry>
+  void subtract_left(std::array<Entry, 4>* value, int k, bool pair, bool second) const;
   template <int count, bool pair, class Entry>
   void subtract_columns(std::array<Entry, 4>* value, const int* first, int offset) const;
   template <bool pair, class Entry>
