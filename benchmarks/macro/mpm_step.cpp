@@ -82,7 +82,7 @@ void measure_parts(Results& results, const std::string& name, ImplicitDynamics& 
   for (const GrainBatch& batch : grains.batches) {
     A.emplace_back(batch.topology->pattern);
     const std::size_t width = 2 * batch.topology->grid.outline_nodes();
-    compliance.emplace_back(width * width);
+    compliance.emplace_back(Wide::size * width * width);
     half.emplace_back(batch.position.size());
   }
   const auto for_batches = [&](auto&& work) {
@@ -99,7 +99,6 @@ void measure_parts(Results& results, const std::string& name, ImplicitDynamics& 
       A[b].add(i, i, {m, 0.0, 0.0, m});
     }
   });
-  const auto numbers = [](WideVectors& v) { return std::span<Wide>(&v[0][0], 2 * v.size()); };
   WideVectors kept;
   OutlineState state{.position = {}, .start = {}, .walls = dynamics.walls, .dt = implicit_dt};
   grains.gather_outline(state.position);
@@ -134,8 +133,7 @@ void measure_parts(Results& results, const std::string& name, ImplicitDynamics& 
       [&] {
         ElasticContacts system(grains, contacts, compliance, increment, implicit_dt, scratch);
         impulse = carried_impulses(grains, dynamics.contacts, dynamics.impulse, contacts);
-        for (int c = 0; c < system.size(); ++c)
-          if (impulse[c][0] > 0) system.apply_impulse(c, impulse[c]);
+        system.apply_impulses(impulse);
         SolverOptions options{.max_sweeps = 10, .tolerance = 0};
         options.velocity_scale = dynamics.mean_radius() / implicit_dt;
         solved = solve_nlgs<2>(system, std::span(impulse), friction, options);

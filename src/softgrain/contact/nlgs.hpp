@@ -10,36 +10,41 @@
 
 namespace softgrain {
 
-/// A system may bring its own sweep: the same mathematics as nlgs_sweep, in the order of the contacts, fused
-/// with its data.
+/// A system may bring its own sweep: the same mathematics as nlgs_sweep, fused with its data, in an order
+/// that its contacts determine.
 template <class S, int Dim>
 concept HasOwnSweep = requires(S& s, std::span<Vec<Dim>> impulse, std::span<const double> friction,
                                const SolverOptions& options) {
   { s.sweep(impulse, friction, options) } -> std::same_as<Violation>;
 };
 
-/// One pass of nonlinear Gauss-Seidel: every contact in turn is solved exactly with the others frozen,
+/// The turn of one contact: it is solved exactly with the others frozen,
 ///   q_c = u_c - W_cc p_c,  p_c <- P(p_c + omega (p_c' - p_c)),  p_c' the solution of one contact under q_c,
-/// and the bodies move at once; P, the projection on the Coulomb cone, acts only for omega > 1. Returns the
-/// violation that each contact showed when its turn came. Allocates nothing.
+/// and the bodies move at once; P, the projection on the Coulomb cone, acts only for omega > 1.
+template <int Dim, ContactSystem<Dim> System>
+void nlgs_update(System& system, int c, Vec<Dim>& p, double mu, double relaxation, Violation& violation) {
+  const Vec<Dim> u = system.relative_velocity(c);
+  if (u[0] >= 0 && p == Vec<Dim>{}) return;  // open, and it stays so
+  const Mat<Dim> W = system.delassus_block(c);
+  const Vec<Dim> solved = solve_signorini_coulomb(W, u - W * p, mu);
+  const Vec<Dim> jump = W * (solved - p);
+  violation.add(dot(jump, jump), solved[0] > 0);
+  Vec<Dim> next = p + relaxation * (solved - p);
+  if (relaxation > 1) next = project_on_coulomb_cone(next, mu);
+  const Vec<Dim> dp = next - p;
+  if (dp == Vec<Dim>{}) return;
+  p = next;
+  system.apply_impulse(c, dp);
+}
+
+/// One pass of nonlinear Gauss-Seidel over the contacts in the order given. Returns the violation that each
+/// contact showed when its turn came. Allocates nothing.
 template <int Dim, ContactSystem<Dim> System>
 Violation nlgs_sweep(System& system, std::span<Vec<Dim>> impulse, std::span<const double> friction,
                      double relaxation) {
   Violation violation;
-  for (int c = 0; c < system.size(); ++c) {
-    Vec<Dim>& p = impulse[c];
-    const Mat<Dim> W = system.delassus_block(c);
-    const Vec<Dim> q = system.relative_velocity(c) - W * p;
-    const Vec<Dim> solved = solve_signorini_coulomb(W, q, friction[c]);
-    const Vec<Dim> jump = W * (solved - p);
-    violation.add(dot(jump, jump), solved[0] > 0);
-    Vec<Dim> next = p + relaxation * (solved - p);
-    if (relaxation > 1) next = project_on_coulomb_cone(next, friction[c]);
-    const Vec<Dim> dp = next - p;
-    if (dp == Vec<Dim>{}) continue;
-    p = next;
-    system.apply_impulse(c, dp);
-  }
+  for (int c = 0; c < system.size(); ++c)
+    nlgs_update<Dim>(system, c, impulse[c], friction[c], relaxation, violation);
   return violation;
 }
 

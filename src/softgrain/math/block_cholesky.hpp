@@ -66,8 +66,8 @@ class BatchedCholesky {
   /// The second half, with more on the kept nodes that is known only now: A^-1 (x + h), h: (2 kept). The
   /// solution goes to x, in the order of the nodes.
   void finish_solve(std::span<const Wide> y, std::span<const Wide> h, std::span<Wide> x) const;
-  /// Compliance of the kept nodes, (A^-1)_bb: (2 kept)^2 row-major.
-  void kept_inverse(std::span<Wide> inverse) const;
+  /// Compliance of the kept nodes, (A^-1)_bb: lane after lane, (2 kept)^2 row-major.
+  void kept_inverse(std::span<double> inverse) const;
 
  private:
   /// The numbers, eight in each Entry.
@@ -81,10 +81,17 @@ class BatchedCholesky {
   void clear(std::size_t blocks);
   template <class Entry>
   unsigned factor(Store<Entry>& store);
+  int alike_columns(int l) const;
   template <class Entry>
-  void forward(const Store<Entry>& store, Entry* y, int first) const;
-  template <class Entry>
-  void backward(const Store<Entry>& store, Entry* y, int first) const;
+  void subtract_left(std::array<Entry, 4>* value, int k, bool pair, bool second) const;
+  template <int count, bool pair, class Entry>
+  void subtract_columns(std::array<Entry, 4>* value, const int* first, int offset) const;
+  template <bool pair, class Entry>
+  void subtract_columns(std::array<Entry, 4>* value, const int* first, int count, int offset) const;
+  template <class Entry, class Right>
+  void forward(const Store<Entry>& store, Right* y, int first) const;
+  template <class Entry, class Right>
+  void backward(const Store<Entry>& store, Right* y, int first) const;
 
   const BlockPattern& pattern_;
   mutable std::variant<Store<Wide>, Store<Narrow>> store_;

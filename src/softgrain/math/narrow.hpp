@@ -13,6 +13,11 @@ struct Narrow {
   Floats lanes{};
 
   Narrow() = default;
+  Narrow(const Narrow& b) : lanes(b.lanes) {}  // as Wide
+  Narrow& operator=(const Narrow& b) {
+    lanes = b.lanes;
+    return *this;
+  }
   explicit Narrow(const Floats& value) : lanes(value) {}
   explicit Narrow(const Wide& value) {
     using Four = float __attribute__((vector_size(16)));
@@ -33,6 +38,12 @@ inline Narrow operator+(const Narrow& a, const Narrow& b) { return Narrow(a.lane
 inline Narrow operator-(const Narrow& a, const Narrow& b) { return Narrow(a.lanes - b.lanes); }
 inline Narrow operator*(const Narrow& a, const Narrow& b) { return Narrow(a.lanes * b.lanes); }
 inline Narrow operator/(const Narrow& a, const Narrow& b) { return Narrow(a.lanes / b.lanes); }
+
+/// c - a b. Of Narrow with one rounding, always: the same bits from every compiler, for half the work.
+inline Narrow minus_product(const Narrow& c, const Narrow& a, const Narrow& b) {
+  return Narrow(__builtin_ia32_vfmaddps256(-a.lanes, b.lanes, c.lanes));
+}
+inline Wide minus_product(const Wide& c, const Wide& a, const Wide& b) { return c - a * b; }
 
 inline Narrow sqrt(Narrow x) {
   for (int lane = 0; lane < Wide::size; ++lane) x.lanes[lane] = std::sqrt(x.lanes[lane]);

@@ -4,71 +4,97 @@
 #include <span>
 #include <vector>
 
+#include "softgrain/contact/contact_levels.hpp"
 #include "softgrain/contact/contact_system.hpp"
+#include "softgrain/contact/residual.hpp"
+#include "softgrain/contact/solver_options.hpp"
 #include "softgrain/mpm/outline_contacts.hpp"
 
 namespace softgrain {
 
-/// Compliance of the outlines of the eight grains of a batch, (A^-1)_bb: (2 outline nodes)^2 row-major [m/N
-/// per m depth].
-using OutlineCompliance = std::vector<Wide>;
+/// Compliance of the outlines of the eight grains of a batch, (A^-1)_bb: grain after grain, each
+/// (2 outline nodes)^2 row-major [m/N per m depth].
+using OutlineCompliance = std::vector<double>;
 
-/// Memory of an ElasticContacts, kept from one to the next: megabytes that are written once, whose pages
-/// would otherwise be given back to the system and asked for again in every Newton iteration.
+/// Memory of an ElasticContacts, kept from one to the next: megabytes whose pages would otherwise be given
+/// back to the system and asked for again in every Newton iteration.
 struct ElasticScratch {
-  std::vector<double> compliance, columns;
+  std::vector<float> columns;
 };
 
 /// Contacts of implicit grains as a ContactSystem (theory: W = H^T A^-1 H/dt^2, with A = M/dt^2 + K): the
 /// impulse sees the implicit operator, condensed grain by grain on the vertices that take part in contacts.
-/// Velocities are those over the step:
-///   u_n = (g + n . (du_slave - du_master))/dt,   u_t = (slip + t . (du_slave - du_master))/dt,
+/// Velocities are those over the step, with v = du/dt:
+///   u_n = g/dt + n . (v_slave - v_master),   u_t = slip/dt + t . (v_slave - v_master),
 /// so that u_n >= 0 is "no penetration at the end of the step".
 class ElasticContacts {
  public:
   /// increment: (outline vertices) du without contact forces [m]. compliance: one for each batch of the
-  /// grains.
+  /// grains, and no longer needed than the system.
   ElasticContacts(const SoftGrains& grains, std::span<const OutlineContact> contacts,
                   std::span<const OutlineCompliance> compliance, std::span<const Vec<2>> increment, double dt,
                   ElasticScratch& scratch);
 
-  int size() const { return static_cast<int>(contacts_.size()); }
-  const Mat<2>& delassus_block(int contact) const { return delassus_[contact]; }
-  Vec<2> relative_velocity(int contact) const;
+  int size() const { return static_cast<int>(contact_.size()); }
+  const Mat<2>& delassus_block(int contact) const { return contact_[contact].delassus; }
+  Vec<2> relative_velocity(int contact) const {
+    const Contact& c = contact_[contact];
+    double x = 0, y = 0;
+    for (int k = 0; k < c.vertices; ++k) {
+      const double* v = &velocity_[c.velocity[k]];
+      x += c.weight[k] * v[0];
+      y += c.weight[k] * v[1];
+    }
+    const Vec<2>& n = c.normal;
+    return {c.start[0] + (n[0] * x + n[1] * y), c.start[1] + (n[0] * y - n[1] * x)};
+  }
   void apply_impulse(int contact, const Vec<2>& dp);
+  /// apply_impulse at every contact, on all threads.
+  void apply_impulses(std::span<const Vec<2>> impulse);
+  /// One sweep of NLGS, on all threads: every second group of contacts, then the others (ContactLevels).
+  Violation sweep(std::span<Vec<2>> impulse, std::span<const double> friction, const SolverOptions& options);
 
  private:
-  /// A grain's vertices in contact: `count` of them, from `first` in increment_ and from `matrix` in
-  /// compliance_.
+  /// A grain's vertices in contact: vertex_[first .. first + count - 1]. Their velocities are `width`
+  /// numbers, filled up with zeros, from `velocity` on in velocity_.
   struct Condensed {
-    int count = 0;
-    std::size_t first = 0, matrix = 0;
+    int first = 0, count = 0, velocity = 0, width = 0;
+    int nodes = 0;                       ///< of the whole outline
+    const double* compliance = nullptr;  ///< of the whole outline
   };
-  /// Where a contact finds its vertices' du in increment_: the slave's, then the master's four.
-  struct Place {
-    std::array<std::size_t, 5> at{};
+  struct Contact {
+    std::array<int, 5> vertex{};     ///< number along its outline: the slave, then the master's four
+    std::array<int, 5> velocity{};   ///< theirs in velocity_
     std::array<double, 5> weight{};  ///< 1, -w_k
-    int count = 1;
+    int vertices = 1;
     int slave_grain = 0, master_grain = -1;
-    std::array<std::ptrdiff_t, 2> column{-1, -1};  ///< of n and t in columns_, once they are needed
+    Vec<2> normal, start;        ///< (g, slip)/dt [m/s]
+    Mat<2> delassus;             ///< W_cc
+    std::size_t column = 0;      ///< where its columns start
+    std::array<bool, 2> made{};  ///< those of n and t
   };
-  void number_vertices();
-  void copy_compliance(std::span<const OutlineCompliance> compliance);
-  Place place_of(const OutlineContact& contact) const;
-  const double* column(int contact, int axis);
-  Mat<2> delassus_of(int contact) const;
+  void number_vertices(const SoftGrains& grains, std::span<const OutlineContact> contacts,
+                       std::span<const Vec<2>> increment);
+  void set(Contact& contact, const OutlineContact& found, const SoftGrains& grains) const;
+  Mat<2> delassus_of(const Contact& contact) const;
+  const float* column(Contact& contact, int axis);
+  template <int vertices>
+  void fill(const Contact& contact, int first, int grain, const Vec<2>& direction, float* column) const;
+  template <class Work>
+  void for_each_in_order(const Work& work);
 
-  const SoftGrains& grains_;
-  std::span<const OutlineContact> contacts_;
   double dt_;
-  std::vector<int> local_;  // (outline vertices) number among the grain's vertices in contact, -1 if none
-  std::vector<Condensed> condensed_;  // (grains)
-  std::vector<Place> places_;         // (contacts)
-  std::vector<double> increment_;     // du of the vertices in contact, grain by grain
-  std::vector<double>& compliance_;
-  std::vector<double>&
-      columns_;  // du of the slave's, then of the master's grain under a unit force at a contact
-  std::vector<Mat<2>> delassus_;
+  std::vector<Condensed> grain_;
+  std::vector<int> local_;   // (outline vertices) place among the grain's vertices in contact, -1 if none
+  std::vector<int> vertex_;  // the vertices in contact, by their number along the outline
+  std::vector<double> velocity_;  // v of the vertices in contact, grain by grain
+  std::vector<Contact> contact_;
+  // A^-1 H_c/dt^2 on the slave's, then on the master's grain; those of n come before those of t. In single
+  // precision, as they are what a sweep reads.
+  float* columns_;
+  std::size_t tangential_ = 0;
+  ContactLevels levels_;
+  std::vector<Violation> violation_;  // (groups)
 };
 
 /// Force on each outline vertex from the contacts' impulses over dt [N/m].

@@ -1,4 +1,5 @@
 #include "softgrain/contact/assemble.hpp"
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/mpm/contact_work.hpp"
 #include "softgrain/mpm/implicit_step.hpp"
 
@@ -14,7 +15,7 @@ void ImplicitDynamics::catch_problem(double dt) {
 /// whole.
 void ImplicitDynamics::balance_momentum(double dt) {
   const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
-  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+  parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];
     WideVectors missing(batch.position.size());
     grains.scatter_outline(force, batch, missing);
@@ -28,13 +29,17 @@ void ImplicitDynamics::balance_momentum(double dt) {
                   m * (batch.velocity[i][d] - velocity_start_[b][i][d]);
     }
     for (Vec<2, Wide>& v : batch.velocity) v += (1.0 / mass) * sum;
-  }
+  });
 }
 
 void ImplicitDynamics::add_work() {
-  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
-    const GrainBatch& batch = grains.batches[b];
+  struct Share {
     Wide internal = 0.0, inertia = 0.0, gravity = 0.0;
+  };
+  std::vector<Share> shares(grains.batches.size());
+  parallel_for(batches(), [&](int b) {
+    const GrainBatch& batch = grains.batches[b];
+    auto& [internal, inertia, gravity] = shares[b];
     for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
       const Wide m = grains.node_mass(batch, i);
       const Vec<2, Wide> moved = batch.position[i] - start_[b][i];
@@ -43,12 +48,13 @@ void ImplicitDynamics::add_work() {
       inertia += 0.5 * m * dot(dv, dv);
       gravity += m * (options.gravity[0] * moved[0] + options.gravity[1] * moved[1]);
     }
-    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) {
-      work.internal += internal[lane];
-      work.inertia += inertia[lane];
-      work.gravity += gravity[lane];
+  });
+  for (std::size_t b = 0; b < grains.batches.size(); ++b)
+    for (int lane = 0; lane < Wide::size && grains.batches[b].grain[lane] >= 0; ++lane) {
+      work.internal += shares[b].internal[lane];
+      work.inertia += shares[b].inertia[lane];
+      work.gravity += shares[b].gravity[lane];
     }
-  }
   add_contact_work(contacts, impulse, outline_, work, wall_impulse_);
 }
 

@@ -23,8 +23,6 @@ constexpr int refactor_every = 8;
 /// NLGS sweeps in vain (docs/decisions/0013).
 constexpr double contact_share = 0.25;
 
-std::span<Wide> numbers(WideVectors& vectors) { return {&vectors[0][0], 2 * vectors.size()}; }
-
 }  // namespace
 
 ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
@@ -42,11 +40,10 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
   for (const GrainBatch& batch : grains.batches) {
     matrix_.emplace_back(batch.topology->pattern);
     const std::size_t width = 2 * batch.topology->grid.outline_nodes();
-    compliance_.emplace_back(width * width);
+    compliance_.emplace_back(Wide::size * width * width);
   }
-  half_solved_.resize(grains.batches.size());
-  force_.resize(grains.batches.size());
-  kept_.resize(grains.batches.size());
+  for (auto* vectors : {&start_, &velocity_start_, &half_solved_, &force_, &kept_, &correction_, &moved_})
+    vectors->resize(grains.batches.size());
   wall_impulse_.resize(walls.size());
 }
 
@@ -91,13 +88,12 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
   impulse_start_ = impulse;
   if (impulse_time > 0)
     for (Vec<2>& p : impulse) p *= dt / impulse_time;  // the same force
-  start_.clear();
-  velocity_start_.clear();
-  for (GrainBatch& batch : grains.batches) {
-    start_.push_back(batch.position);
-    velocity_start_.push_back(batch.velocity);
+  parallel_for(batches(), [&](int b) {
+    GrainBatch& batch = grains.batches[b];
+    start_[b] = batch.position;
+    velocity_start_[b] = batch.velocity;
     for (std::size_t i = 0; i < batch.position.size(); ++i) batch.position[i] += Wide(dt) * batch.velocity[i];
-  }
+  });
   for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
   outline_.walls = walls;
   outline_.dt = dt;
@@ -107,7 +103,8 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
   for (int iteration = 1; failure == Failure::none; ++iteration) {
     if ((failure = residual(dt)) != Failure::none) break;
     report.converged = solve_contacts(dt, report);
-    const double correction = correct() / mean_radius_;
+    const bool same_matrix = iteration > 1 && (iteration - 1) % refactor_every != 0;
+    const double correction = correct(same_matrix) / mean_radius_;
     ++report.iterations;
     report.residual = correction;
     if (!(correction < largest_correction))
@@ -204,38 +201,13 @@ bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   impulse = carried_impulses(grains, contacts, impulse, found);
   contacts = std::move(found);
   ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt, scratch_);
-  for (int c = 0; c < system.size(); ++c)
-    if (impulse[c][0] > 0) system.apply_impulse(c, impulse[c]);
+  system.apply_impulses(impulse);
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
   solver.tolerance = contact_share * options.tolerance;
   const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction_of_contacts(), solver);
   report.sweeps += solved.sweeps;
   return solved.converged;
-}
-
-/// x += A^-1 (r + H p/dt). Returns the largest correction [m].
-double ImplicitDynamics::correct() {
-  const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, outline_.dt);
-  std::vector<std::pair<double, int>> largest(batches());  // |dx|^2 and the grain where it is
-  parallel_for(batches(), [&](int b) {
-    GrainBatch& batch = grains.batches[b];
-    WideVectors& dx = force_[b];
-    dx.assign(dx.size(), {});
-    grains.scatter_outline(force, batch, dx);
-    kept_[b].assign(dx.begin() + batch.topology->grid.outline_begin, dx.end());
-    matrix_[b].finish_solve(numbers(half_solved_[b]), numbers(kept_[b]), numbers(dx));
-    for (std::size_t i = 0; i < batch.position.size(); ++i) {
-      batch.position[i] += dx[i];
-      const Wide square = dot(dx[i], dx[i]);
-      for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
-        if (!(square[lane] <= largest[b].first)) largest[b] = {square[lane], batch.grain[lane]};
-    }
-  });
-  double most = 0;
-  for (const auto& [square, grain] : largest)
-    if (!(square <= most)) most = square, failed_grain_ = grain;
-  return std::sqrt(most);
 }
 
 /// v = (x - x_n)/dt; the walls' impulses; the work done; the contacts as they are at the end.

@@ -12,6 +12,9 @@
 
 namespace softgrain {
 
+/// x and y of each vector, one after the other.
+inline std::span<Wide> numbers(WideVectors& vectors) { return {&vectors[0][0], 2 * vectors.size()}; }
+
 struct ImplicitOptions {
   double tolerance = 1e-4;  ///< largest correction of Newton's last iteration, over the mean grain radius
   int max_iterations = 40;  ///< of Newton's method
@@ -31,7 +34,8 @@ struct ImplicitOptions {
 ///   M (x - x_n - dt v_n)/dt^2 + f_int(x) = f_ext + H p/dt,   v = (x - x_n)/dt,
 ///   0 <= g(x) _|_ p_n >= 0,  |p_t| <= mu p_n.
 /// Newton's method detects contacts anew in every iteration; A = M/dt^2 + K + proximal term is factored once
-/// a step, and again where Newton's method needs many iterations.
+/// a step, and again where Newton's method needs many iterations; each grain follows the secant of its last
+/// two corrections (docs/decisions/0021).
 class ImplicitDynamics {
  public:
   ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
@@ -63,7 +67,7 @@ class ImplicitDynamics {
   Failure factor(double dt, double proximal, SoftStepReport& report);
   Failure residual(double dt);
   bool solve_contacts(double dt, SoftStepReport& report);
-  double correct();
+  double correct(bool same_matrix);
   void catch_problem(double dt);
   Failure finish(double dt, SoftStepReport& report);
   void balance_momentum(double dt);
@@ -82,6 +86,7 @@ class ImplicitDynamics {
   bool none_failed(std::span<const int> grain_of_batch);
 
   std::vector<WideVectors> start_, velocity_start_, half_solved_, force_, kept_;  // per batch
+  std::vector<WideVectors> correction_, moved_;  // of the iteration before: f, and what became of x
   std::vector<Vec<2>> outline_increment_;
   OutlineState outline_;
   std::vector<Wall<2>> walls_start_;

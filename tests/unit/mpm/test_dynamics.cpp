@@ -200,3 +200,20 @@ TEST_CASE("dynamics without grains or with negative friction is refused") {
   CHECK_THROWS_AS(ImplicitDynamics(colliding_pair(), {}, {.friction = -0.1}), UsageError);
   CHECK_THROWS_AS(ExplicitDynamics(colliding_pair(), {}, {.wall_friction = -0.1}), UsageError);
 }
+
+TEST_CASE(
+    "a grain that plates press hard needs five iterations a step, the term on its outline notwithstanding") {
+  const SoftGrains grains({test::placed(test::disk(6), 1e-3, {0, 1e-3})}, make_law("neo_hookean", 1e7, 0.3),
+                          1000, false);
+  const double dt = 60 * stable_time_step(grains, 1);
+  ImplicitDynamics dynamics(
+      grains, {test::floor_at(0), {.point = {0, 2e-3}, .normal = {0, -1}, .velocity = {0, -0.02e-3 / dt}}},
+      {.tolerance = 1e-5});
+  int iterations = 0;
+  for (int step = 0; step < 20; ++step) {
+    const SoftStepReport report = dynamics.step(dt);
+    CHECK(report.rejected == 0);
+    iterations += report.iterations;
+  }
+  CHECK(iterations < 120);  // without the secant 290, and rejected steps
+}
