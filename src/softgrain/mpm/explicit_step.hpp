@@ -13,7 +13,7 @@ struct ExplicitOptions {
   double damping_time =
       0;  ///< tau [s]: internal forces are taken at x + tau v, which damps the mesh's own vibrations
   SolverOptions solver{
-      .max_sweeps = 200, .tolerance = 5e-6, .relaxation = 1.4};  ///< NLGS; in units of mean radius / dt
+      .max_sweeps = 200, .tolerance = 4.5e-6, .relaxation = 1.4};  ///< NLGS; in units of mean radius / dt
   double friction = 0;
   double wall_friction = 0;
   Vec<2> gravity{};  ///< [m/s^2]
