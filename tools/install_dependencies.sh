@@ -18,7 +18,7 @@ libraries  libtomlplusplus-dev     case files
 libraries  nlohmann-json3-dev      run.json and the case schema
 libraries  libhdf5-dev             snapshots
 libraries  libxxhash-dev           content hash of a snapshot
-libraries  zlib1g-dev              compressed files for ParaView
+libraries  libdeflate-dev          compressed files for ParaView, and pages
 libraries  libeigen3-dev           sparse matrices of contact problems
 python     python3-dev             headers for the Python module
 python     pybind11-dev            the Python module

@@ -45,6 +45,7 @@ std::string unique_name(const void* owner) { return fmt::format("{}", owner); }
 void silence_library() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 constexpr hsize_t chunk_bytes = 1 << 20;
+constexpr std::size_t grown_by = 8 << 20;  // a file in memory, at a time
 
 }  // namespace
 
@@ -88,7 +89,7 @@ Hdf5Writer::Hdf5Writer(std::string name) : name_(std::move(name)) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   checked(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110), name_, "HDF5 older than 1.10");
   constexpr auto what = "cannot create an HDF5 file in memory";
-  checked(H5Pset_fapl_core(access, chunk_bytes, false), name_, what);
+  checked(H5Pset_fapl_core(access, grown_by, false), name_, what);
   auto callbacks = keep_image_at_close(bytes_);
   checked(H5Pset_file_image_callbacks(access, &callbacks), name_, what);
   file_ = checked(H5Fcreate(unique_name(this).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), name_, what);
@@ -171,7 +172,7 @@ Hdf5Reader::~Hdf5Reader() { H5Fclose(file_); }
 void Hdf5Reader::open(std::string_view bytes) {
   silence_library();
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  checked(H5Pset_fapl_core(access, chunk_bytes, false), name_, "no memory for an HDF5 file");
+  checked(H5Pset_fapl_core(access, grown_by, false), name_, "no memory for an HDF5 file");
   std::string image(bytes);  // the library copies it once more, but takes no pointer to const
   checked(H5Pset_file_image(access, image.data(), image.size()), name_, "not an HDF5 file");
   size_ = bytes.size();

@@ -1,12 +1,8 @@
 #include "softgrain/io/report_codec.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "softgrain/core/error.hpp"
 
 namespace softgrain {
 
@@ -49,26 +45,6 @@ std::string encode_whole(std::span<const std::uint32_t> q, std::size_t stride, i
       planes[static_cast<std::size_t>(plane) * q.size() + i] = static_cast<char>(code >> 8 * plane);
   }
   return planes;
-}
-
-std::string gzip(std::string_view bytes) {
-  constexpr int window_with_gzip_header = 15 + 16, memory = 8;
-  z_stream stream{};
-  if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, window_with_gzip_header, memory,
-                   Z_DEFAULT_STRATEGY) != Z_OK)
-    throw IoError("zlib could not begin to compress a report");
-  std::string packed(deflateBound(&stream, bytes.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  const bool fits =
-      bytes.size() <= std::numeric_limits<uInt>::max() && packed.size() <= std::numeric_limits<uInt>::max();
-  const bool ok = fits && deflate(&stream, Z_FINISH) == Z_STREAM_END;
-  packed.resize(stream.total_out);
-  deflateEnd(&stream);
-  if (!ok) throw IoError("zlib could not compress a report");
-  return packed;
 }
 
 std::string base64(std::string_view bytes) {

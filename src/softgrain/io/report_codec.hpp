@@ -29,9 +29,6 @@ EncodedArray encode_indices(std::span<const float> values, std::size_t stride);
 /// (0, -1, 1, -2, ... become 0, 1, 2, 3, ...), then the lowest byte of all, the next byte of all, and so on.
 std::string encode_whole(std::span<const std::uint32_t> q, std::size_t stride, int bytes);
 
-/// RFC 1952. Raises IoError when zlib fails.
-std::string gzip(std::string_view bytes);
-
 /// RFC 4648, with padding, in one line.
 std::string base64(std::string_view bytes);
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/io/compress.hpp"
 #include "softgrain/io/file.hpp"
 #include "softgrain/io/report_codec.hpp"
 #include "softgrain/io/report_frame.hpp"
@@ -19,6 +20,8 @@ namespace softgrain {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr int page_compression = 6;
 
 using Json = nlohmann::ordered_json;
 using Column = std::vector<float>;
@@ -260,7 +263,7 @@ ReportRun encode_run(const RunPaths& paths, const std::string& name, const Repor
   std::string planes;
   add_arrays(frames.all(), header, planes);
   const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
-  run.payload = gzip(little_endian(text.size()) + text + planes);
+  run.payload = compressed(little_endian(text.size()) + text + planes, Container::gzip, page_compression);
   run.frames = frames.all().size();
   return run;
 }

@@ -1,19 +1,24 @@
 #include "softgrain/io/vtp_writer.hpp"
 
-#include <zlib.h>
+#include <fmt/core.h>
 
 #include <cfloat>
 #include <cmath>
 #include <cstring>
 #include <numeric>
 #include <string_view>
+#include <unordered_map>
 
-#include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
+#include "softgrain/io/compress.hpp"
 #include "softgrain/io/file.hpp"
 
 namespace softgrain {
 
 namespace {
+
+constexpr int fastest_compression = 1;
+constexpr std::size_t block_size = 1 << 20;
 
 float as_float(double value) {
   const auto narrow = static_cast<float>(value);
@@ -25,17 +30,19 @@ std::string raw_bytes(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-/// VTK's compressed block: number of blocks, size of a block, of a last partial one, of each when compressed.
-std::string compressed_block(const std::string& raw) {
-  if (raw.empty()) return raw_bytes(std::vector<std::uint64_t>{0, 0, 0});
-  std::string packed(compressBound(raw.size()), '\0');
-  uLongf size = packed.size();
-  constexpr int fastest = 1;
-  if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(raw.data()),
-                raw.size(), fastest) != Z_OK)
-    throw IoError("zlib could not compress a .vtp array");
-  packed.resize(size);
-  return raw_bytes(std::vector<std::uint64_t>{1, raw.size(), 0, size}) + packed;
+/// VTK's compressed array: number of blocks, size of a block, of a last partial one, of each when compressed;
+/// then the blocks.
+std::string compressed_blocks(std::string_view raw) {
+  const std::size_t count = (raw.size() + block_size - 1) / block_size;
+  std::vector<std::string> block(count);
+  parallel_for(static_cast<int>(count), [&](int k) {
+    block[k] = compressed(raw.substr(k * block_size, block_size), Container::zlib, fastest_compression);
+  });
+  std::vector<std::uint64_t> sizes{count, block_size, raw.size() % block_size};
+  for (const std::string& packed : block) sizes.push_back(packed.size());
+  std::string blocks = raw_bytes(sizes);
+  for (const std::string& packed : block) blocks += packed;
+  return blocks;
 }
 
 /// The XML of a .vtp file and, behind it, its binary blocks.
@@ -47,6 +54,7 @@ class VtpText {
     if (const auto* reals = std::get_if<std::vector<double>>(&array.values)) {
       const std::size_t columns = array.columns == 2 ? 3 : array.columns;
       std::vector<float> floats;
+      floats.reserve(reals->size() / array.columns * columns);
       for (std::size_t k = 0; k < reals->size(); ++k) {
         floats.push_back(as_float((*reals)[k]));
         if (array.columns == 2 && k % 2 == 1) floats.push_back(0);
@@ -66,7 +74,7 @@ class VtpText {
     line(fmt::format(
         R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)", type,
         name, columns, blocks_.size()));
-    blocks_ += compressed_block(raw);
+    blocks_ += compressed_blocks(raw);
   }
 
   std::string xml_, blocks_;
@@ -110,17 +118,24 @@ PolyData particles_of(const Scene& scene) {
 
 PolyData contacts_of(const Scene& scene) {
   PolyData data;
-  data.positions = positions_of(scene);
   data.has_lines = true;
   const auto pair = scene.contacts.find("pair");
   if (pair == scene.contacts.end()) return data;
   const auto& ends = std::get<std::vector<std::int64_t>>(pair->second.values);
-  const auto points = static_cast<std::int64_t>(data.positions.size() / 2);
+  const std::vector<double> positions = positions_of(scene);
+  const auto points = static_cast<std::int64_t>(positions.size() / 2);
   const auto is_particle = [&](std::int64_t end) { return end >= 0 && end < points; };
   std::vector<std::size_t> kept;
   for (std::size_t k = 0; 2 * k + 1 < ends.size(); ++k)
     if (is_particle(ends[2 * k]) && is_particle(ends[2 * k + 1])) kept.push_back(k);
-  for (const std::size_t k : kept) data.lines.insert(data.lines.end(), {ends[2 * k], ends[2 * k + 1]});
+  std::unordered_map<std::int64_t, std::int64_t> number;  // of the points that lines end at
+  const auto number_of = [&](std::int64_t point) {
+    const auto [found, is_new] = number.try_emplace(point, static_cast<std::int64_t>(number.size()));
+    if (is_new) data.positions.insert(data.positions.end(), {positions[2 * point], positions[2 * point + 1]});
+    return found->second;
+  };
+  for (const std::size_t k : kept)
+    for (const std::int64_t end : {ends[2 * k], ends[2 * k + 1]}) data.lines.push_back(number_of(end));
   for (const auto& [name, array] : scene.contacts)
     if (name != "pair") data.cell_data[name] = select_rows(array, kept);
   return data;

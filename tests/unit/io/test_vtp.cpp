@@ -70,7 +70,24 @@ TEST_CASE("ParaView's particles are points in space with their fields as float32
   CHECK(vtp_array<std::int64_t>(file, "offsets") == std::vector<std::int64_t>{1, 2, 3});
 }
 
-TEST_CASE("ParaView's contacts are lines between particles with their force") {
+TEST_CASE("ParaView's arrays of more than a block come back whole") {
+  std::vector<double> x;
+  for (int k = 0; k < 400000; ++k) x.push_back(k % 1000 / 7.0);
+  Scene scene;
+  scene.particles["position"] = {2, x};
+  const std::vector<float> position = vtp_array<float>(encode_vtp(particles_of(scene)), "position");
+  REQUIRE(position.size() == 600000);
+  for (int k = 0; k < 200000; ++k)
+    REQUIRE((position[3 * k] == static_cast<float>(x[2 * k]) && position[3 * k + 2] == 0));
+}
+
+TEST_CASE("ParaView's contacts are lines between particles with their force, without the other particles") {
+  Scene scene = three_disks();
+  scene.contacts["pair"] = {2, std::vector<std::int64_t>{2, 1}};
+  scene.contacts["force"] = {1, std::vector<double>{10}};
+  CHECK(vtp_array<float>(encode_vtp(contacts_of(scene)), "position") ==
+        std::vector<float>{4, 0, 0, 2, 0.5F, 0});
+
   const std::string file = encode_vtp(contacts_of(three_disks()));
   CHECK(file.find("NumberOfPoints=\"3\" NumberOfVerts=\"0\" NumberOfLines=\"2\"") != std::string::npos);
   CHECK(vtp_array<std::int64_t>(file, "connectivity") == std::vector<std::int64_t>{0, 1, 2, 1});

@@ -109,7 +109,8 @@ TEST_CASE(
   LumpedContacts::Scratch scratch;
   LumpedContacts system(packing.contacts, packing.outline, packing.velocity, packing.inverse_mass, scratch);
   for (std::size_t c = 0; c < n; ++c)
-    CHECK(system.relative_velocity(c)[0] == doctest::Approx(packing.contacts[c].gap / packing.outline.dt));
+    CHECK(system.relative_velocity(static_cast<int>(c))[0] ==
+          doctest::Approx(packing.contacts[c].gap / packing.outline.dt));
   std::vector<Vec<2>> impulse(n), expected(n);
   Violation by_strips;
   for (int sweep = 0; sweep < 3; ++sweep) by_strips = system.sweep(impulse, friction, options);

@@ -1,0 +1,13 @@
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace softgrain {
+
+/// What stands around deflated bytes: RFC 1950, RFC 1952.
+enum class Container { zlib, gzip };
+
+/// Deflated bytes; `level` from 1, the fastest, to 12, the smallest. Raises IoError without memory.
+std::string compressed(std::string_view bytes, Container container, int level);
+
+}  // namespace softgrain
