@@ -64,10 +64,11 @@ double seconds_of_step(const Case& c, const Estimate& e) {
   constexpr int usual_sweeps = 17;
   const int sweeps =
       std::clamp(usual_sweeps, c.solver.min_sweeps, std::max(c.solver.min_sweeps, c.solver.max_sweeps));
-  if (c.experiment.model == "bpm") return e.contacts * sweeps * 5.5e-9;
+  if (c.experiment.model == "bpm")
+    return e.contacts * sweeps * (c.solver.precision == "single" ? 4.1e-9 : 5.5e-9);
   if (is_updated_lagrangian(c)) return e.particles * 1.1e-7;
   const double batches = std::ceil(grains(c) / 8);  // a batch of 8 grains costs the same when it is not full
-  return batches * 8 * e.particles / grains(c) * (is_implicit(c) ? 4.5e-7 : 1.1e-8);
+  return batches * 8 * e.particles / grains(c) * (is_implicit(c) ? 2.7e-7 : 5.5e-9);
 }
 
 /// Snapshots and ParaView's files of a whole run [bytes], as measured by primary and by material point.

@@ -59,7 +59,7 @@ TEST_CASE("the hours are within a factor of two of what the paper's runs took") 
   // CPU time on one thread, experiments/paper and docs/performance.md
   Case c;
   c.grain.radius = 5e-3;
-  CHECK(std::abs(std::log2(3600 * estimate(c).hours / 24)) < 1);  // one bonded grain, 69 011 steps
+  CHECK(std::abs(std::log2(3600 * estimate(c).hours / 15)) < 1);  // one bonded grain, 69 011 steps
   c.experiment = {.loading = "compaction", .model = "bpm"};
   c.sample.grains = 300;
   c.loading.wall_velocity = 5;
@@ -67,14 +67,13 @@ TEST_CASE("the hours are within a factor of two of what the paper's runs took") 
   c.loading.unload_at = {};
   c.bpm.primaries = 200;
   c.time.step = 0.1e-6;
-  CHECK(std::abs(std::log2(3600 * estimate(c).hours / 302)) < 1);
+  CHECK(std::abs(std::log2(3600 * estimate(c).hours / 224)) < 1);
   c.experiment.model = "mpm";
-  c.loading.max_packing_fraction = 1.04;
+  c.loading.max_packing_fraction = 0.985;
   c.mpm.cells = 16;
   c.mpm.time_step = 5e-6;
-  CHECK(std::abs(std::log2(3600 * estimate(c).hours / 230)) < 1);
+  CHECK(std::abs(std::log2(3600 * estimate(c).hours / 116)) < 1);
   c.mpm.time_step = 0;
   c.mpm.integrator = "explicit";
-  c.loading.max_packing_fraction = 0.985;
-  CHECK(std::abs(std::log2(3600 * estimate(c).hours / 349)) < 1);
+  CHECK(std::abs(std::log2(3600 * estimate(c).hours / 189)) < 1);
 }
