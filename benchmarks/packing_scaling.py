@@ -57,9 +57,10 @@ def rows(quick):
 
 
 def write(quick):
+    commit = subprocess.run(["git", "-C", HERE, "describe", "--always", "--dirty", "--abbrev=12"], stdout=subprocess.PIPE, text=True).stdout.strip()
     done = []
     for row in rows(quick):
-        done.append({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in row.items()})
+        done.append({"commit": commit} | {k: f"{v:.4g}" if isinstance(v, float) else v for k, v in row.items()})
         print(*done[-1].values(), sep="\t", flush=True)
     if quick:
         return
