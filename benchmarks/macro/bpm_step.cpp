@@ -33,7 +33,7 @@ StepMeans run_steps(BpmCompression simulation) {
 
 /// CPU seconds per step of the whole step and of its parts, by the library's own functions.
 struct StepParts {
-  double whole, attraction, detection, offsets, sweeps, stale, warm_start, rebuild;
+  double whole, attraction, detection, offsets, sweeps, stale, warm_start, velocities, rebuild;
 };
 
 StepParts time_parts(const BpmCompression& simulation, const Case& paper, const StepMeans& mean) {
@@ -45,9 +45,13 @@ StepParts time_parts(const BpmCompression& simulation, const Case& paper, const 
   std::vector<Vec<2>> force(particles.position.size());
   std::vector<double> offset;
   signorini_offset<2>(contacts, particles.velocity, {}, paper.time.step, offset);
-  RigidContactSystem<2> system(particles, contacts, offset);
-  const SolverOptions options{.relaxation = paper.solver.relaxation};
-  // the warm start changes velocities for good, the rebuild contacts: both work on copies
+  const auto start = [&](NarrowSweeps& narrow) {
+    narrow.start(
+        particles, contacts, [](int, int) {}, offset, paper.solver.relaxation);
+  };
+  NarrowSweeps swept, started;
+  start(swept);
+  // impulses change velocities for good, the rebuild contacts: both work on copies
   RigidParticles<2> pushed = particles;
   RigidContactSystem<2> pushed_system(pushed, contacts, offset);
   RigidDynamics<2> rebuilt = state;
@@ -63,8 +67,9 @@ StepParts time_parts(const BpmCompression& simulation, const Case& paper, const 
       repeated(calls, [&] { detect_contacts(particles, contacts); }),
       repeated(calls,
                [&] { signorini_offset<2>(contacts, particles.velocity, {}, paper.time.step, offset); }),
-      repeated(calls, [&] { system.sweep(contacts.impulse, contacts.friction, options); }),
+      repeated(calls, [&] { swept.sweep(true); }),
       repeated(calls, [&] { stale += needs_rebuild(state.reference, particles) ? 1 : 0; }),
+      repeated(calls, [&] { start(started); }),
       repeated(calls, [&] { pushed_system.apply_impulses(contacts.impulse); }),
       repeated(calls,
                [&] {
@@ -80,7 +85,8 @@ StepParts time_parts(const BpmCompression& simulation, const Case& paper, const 
           .sweeps = mean.sweeps * seconds[4] / calls,
           .stale = seconds[5] / calls,
           .warm_start = seconds[6] / calls,
-          .rebuild = mean.rebuilds * seconds[7] / calls};
+          .velocities = seconds[7] / calls,
+          .rebuild = mean.rebuilds * seconds[8] / calls};
 }
 
 }  // namespace
@@ -110,7 +116,8 @@ int main(int argc, char** argv) {
   add("attraction", part.attraction);
   add("detection", part.detection);
   add("rebuild of both lists", part.rebuild);
-  add("warm start", part.warm_start);
+  add("warm start, in single precision", part.warm_start);
+  add("velocities from impulses", part.velocities);
   add("offsets", part.offsets);
   add("question whether to rebuild", part.stale);
   add("the rest: work, report, wall forces, drift", rest);
