@@ -85,29 +85,29 @@ int BatchedCholesky::alike_columns(int l) const {
   return alike;
 }
 
-/// A_ik -= sum_j L_ij L_kj^T over `count` columns j with entries in the same rows; first: their blocks L_kj.
-/// With `pair`, also A_i(k+1), whose blocks are `offset` behind those of A_ik.
-template <int count, bool pair, class Entry>
+/// A_ik -= sum_j L_ij L_kj^T over `Count` columns j with entries in the same rows; first: their blocks L_kj.
+/// With `Pair`, also A_i(k+1), whose blocks are `offset` behind those of A_ik.
+template <int Count, bool Pair, class Entry>
 void BatchedCholesky::subtract_columns(Block<Entry>* value, const int* first, int offset) const {
-  std::array<const Block<Entry>*, count> L;
-  std::array<Block<Entry>, count> L_k, L_next;
-  for (int q = 0; q < count; ++q) {
+  std::array<const Block<Entry>*, Count> L;
+  std::array<Block<Entry>, Count> L_k, L_next;
+  for (int q = 0; q < Count; ++q) {
     L[q] = value + first[q];
     L_k[q] = L[q][0];
-    if (pair) L_next[q] = L[q][1];
+    if (Pair) L_next[q] = L[q][1];
   }
   const int* row = &pattern_.row_[first[0]];
   const int rows = pattern_.column_begin_[pattern_.column_of_[first[0]] + 1] - first[0];
   for (int i = 0; i < rows; ++i) {
     Block<Entry>* at = value + place_[row[i]];
     Entry a = at[0][0], b = at[0][1], c = at[0][2], d = at[0][3];
-    if (!pair || i == 0) {
+    if (!Pair || i == 0) {
 #pragma GCC unroll 4
-      for (int q = 0; q < count; ++q) subtract_product(a, b, c, d, L[q][i], L_k[q]);
+      for (int q = 0; q < Count; ++q) subtract_product(a, b, c, d, L[q][i], L_k[q]);
     } else {
       Entry e = at[offset][0], f = at[offset][1], g = at[offset][2], h = at[offset][3];
 #pragma GCC unroll 4
-      for (int q = 0; q < count; ++q) {
+      for (int q = 0; q < Count; ++q) {
         subtract_product(a, b, c, d, L[q][i], L_k[q]);
         subtract_product(e, f, g, h, L[q][i], L_next[q]);
       }
@@ -117,14 +117,14 @@ void BatchedCholesky::subtract_columns(Block<Entry>* value, const int* first, in
   }
 }
 
-template <bool pair, class Entry>
+template <bool Pair, class Entry>
 void BatchedCholesky::subtract_columns(Block<Entry>* value, const int* first, int count, int offset) const {
   if (count == 4)
-    subtract_columns<4, pair>(value, first, offset);
+    subtract_columns<4, Pair>(value, first, offset);
   else if (count >= 2)
-    subtract_columns<2, pair>(value, first, offset);
+    subtract_columns<2, Pair>(value, first, offset);
   else
-    subtract_columns<1, pair>(value, first, offset);
+    subtract_columns<1, Pair>(value, first, offset);
 }
 
 /// A_ik -= sum_j L_ij L_kj^T. With `pair`, also A_i(k+1) of the columns j that reach row k + 1; with

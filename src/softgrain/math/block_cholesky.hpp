@@ -84,9 +84,9 @@ class BatchedCholesky {
   int alike_columns(int l) const;
   template <class Entry>
   void subtract_left(std::array<Entry, 4>* value, int k, bool pair, bool second) const;
-  template <int count, bool pair, class Entry>
+  template <int Count, bool Pair, class Entry>
   void subtract_columns(std::array<Entry, 4>* value, const int* first, int offset) const;
-  template <bool pair, class Entry>
+  template <bool Pair, class Entry>
   void subtract_columns(std::array<Entry, 4>* value, const int* first, int count, int offset) const;
   template <class Entry, class Right>
   void forward(const Store<Entry>& store, Right* y, int first) const;

@@ -24,8 +24,8 @@ void ContactStrips::sort(std::span<const OutlineContact> contacts, std::span<con
   // vertices of strip s lie in (s width - reach, (s + 1) width + reach)
   const double length = high - low, most = reach > 0 ? length / (2.01 * reach) : n;
   const bool divisible = length > 0 && std::isfinite(length);
-  const int strips =
-      divisible ? std::max(1, static_cast<int>(std::min<double>(n / contacts_per_strip, most))) : 1;
+  const int wanted = n / contacts_per_strip;
+  const int strips = divisible ? std::max(1, static_cast<int>(std::min<double>(wanted, most))) : 1;
   strip_.resize(n);
   begin.assign(strips + 1, 0);
   for (int c = 0; c < n; ++c) {

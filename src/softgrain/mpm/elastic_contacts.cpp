@@ -114,14 +114,14 @@ Mat<2> ElasticContacts::delassus_of(const Contact& contact) const {
 }
 
 /// sum_k w_k (A^-1)_k . direction / dt^2 over the vertices of one grain.
-template <int vertices>
+template <int Vertices>
 void ElasticContacts::fill(const Contact& contact, int first, int grain, const Vec<2>& direction,
                            float* column) const {
   const Condensed& g = grain_[grain];
   const std::ptrdiff_t nodes_width = 2 * g.nodes;
-  std::array<const double*, 2 * vertices> row;
-  std::array<double, 2 * vertices> factor;
-  for (int k = 0; k < 2 * vertices; ++k) {
+  std::array<const double*, 2 * Vertices> row;
+  std::array<double, 2 * Vertices> factor;
+  for (int k = 0; k < 2 * Vertices; ++k) {
     const int vertex = first + k / 2;
     row[k] = g.compliance + (2 * contact.vertex[vertex] + k % 2) * nodes_width;
     factor[k] = contact.weight[vertex] * direction[k % 2] / (dt_ * dt_);
@@ -129,7 +129,7 @@ void ElasticContacts::fill(const Contact& contact, int first, int grain, const V
   for (int i = 0; i < g.count; ++i) {
     const int at = 2 * vertex_[g.first + i];
     double x = 0, y = 0;
-    for (int k = 0; k < 2 * vertices; ++k) {
+    for (int k = 0; k < 2 * Vertices; ++k) {
       x += factor[k] * row[k][at];
       y += factor[k] * row[k][at + 1];
     }

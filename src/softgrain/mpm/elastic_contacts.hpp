@@ -78,7 +78,7 @@ class ElasticContacts {
   void set(Contact& contact, const OutlineContact& found, const SoftGrains& grains) const;
   Mat<2> delassus_of(const Contact& contact) const;
   const float* column(Contact& contact, int axis);
-  template <int vertices>
+  template <int Vertices>
   void fill(const Contact& contact, int first, int grain, const Vec<2>& direction, float* column) const;
   template <class Work>
   void for_each_in_order(const Work& work);

@@ -114,7 +114,7 @@ struct NarrowSweeps::Bodies {
 };
 
 /// Per contact: reads 36 B of contact and 16 B of velocities, writes 4 B and 16 B.
-template <bool measured>
+template <bool Measured>
 void NarrowSweeps::relax(Eight& c, LaneViolation& violation) {
   Bodies bodies(velocity_.data(), c);
   // u_n = n . (v_b - v_a) + q_n;  p_n <- max(0, p_n - omega u_n / W_nn)
@@ -123,13 +123,13 @@ void NarrowSweeps::relax(Eight& c, LaneViolation& violation) {
   const Floats dp = p_n - c.p_n;
   c.p_n = p_n;
   bodies.apply(dp * c.n_x, dp * c.n_y);
-  if constexpr (measured) {
+  if constexpr (Measured) {
     const Floats v = dp * (c.inverse_a + c.inverse_b);
     violation.add(v * v, p_n);
   }
 }
 
-template <bool measured>
+template <bool Measured>
 void NarrowSweeps::relax(FrictionalEight& c, LaneViolation& violation) {
   Bodies bodies(velocity_.data(), c);
   const float kappa = inertia_ratio_;
@@ -149,19 +149,19 @@ void NarrowSweeps::relax(FrictionalEight& c, LaneViolation& violation) {
   // ds = -kappa p_t / m on both
   scatter(s_a - kappa * c.inverse_a * dp_t, spin_.data(), c.a);
   scatter(s_b - kappa * c.inverse_b * dp_t, spin_.data(), c.b);
-  if constexpr (measured) {
+  if constexpr (Measured) {
     const Floats W_nn = c.inverse_a + c.inverse_b;
     const Floats v_n = W_nn * dp_n, v_t = (1 + kappa) * W_nn * dp_t;
     violation.add(v_n * v_n + v_t * v_t, p_n);
   }
 }
 
-template <bool measured>
+template <bool Measured>
 Violation NarrowSweeps::sweep_block(Block& block) {
   LaneViolation violation;
-  for (Eight& contact : block.frictionless.eights) relax<measured>(contact, violation);
-  for (FrictionalEight& contact : block.frictional.eights) relax<measured>(contact, violation);
-  return measured ? violation.total(relaxation_) : Violation{};
+  for (Eight& contact : block.frictionless.eights) relax<Measured>(contact, violation);
+  for (FrictionalEight& contact : block.frictional.eights) relax<Measured>(contact, violation);
+  return Measured ? violation.total(relaxation_) : Violation{};
 }
 
 Violation NarrowSweeps::sweep(bool measured) {

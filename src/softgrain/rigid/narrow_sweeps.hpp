@@ -68,11 +68,11 @@ class NarrowSweeps {
   template <class AnyEight>
   void load(const RigidContacts<2>& contacts, std::span<const double> offset, int begin,
             Batch<AnyEight>& batch);
-  template <bool measured>
+  template <bool Measured>
   void relax(Eight& contact, LaneViolation& violation);
-  template <bool measured>
+  template <bool Measured>
   void relax(FrictionalEight& contact, LaneViolation& violation);
-  template <bool measured>
+  template <bool Measured>
   Violation sweep_block(Block& block);
 
   std::vector<Block> blocks_;       // by ContactBlock::list

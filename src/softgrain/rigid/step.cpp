@@ -107,9 +107,8 @@ SolverReport RigidDynamics<Dim>::solve(double dt) {
   offset_.resize(contacts.size());
   overlaps_.resize(blocks);
   RigidContactSystem<Dim> system(particles, contacts, offset_);
-  if constexpr (Dim == 2) {
-    if (options.precision == Precision::single) return solve_in_single_precision(system, solver, dt);
-  }
+  if (Dim == 2 && options.precision == Precision::single)
+    return solve_in_single_precision(system, solver, dt);
   parallel_ranges(contacts.size(), [&](int begin, int end) { prepare(begin, end, dt); });
   system.apply_impulses(contacts.impulse);
   const SolverReport report = solve_nlgs<Dim>(system, contacts.impulse, contacts.friction, solver);
@@ -119,17 +118,20 @@ SolverReport RigidDynamics<Dim>::solve(double dt) {
 
 template <int Dim>
 SolverReport RigidDynamics<Dim>::solve_in_single_precision(RigidContactSystem<Dim>& system,
-                                                           const SolverOptions& solver,
-                                                           double dt) requires(Dim == 2) {
-  narrow_.start(
-      particles, contacts, [&](int begin, int end) { prepare(begin, end, dt); }, offset_, solver.relaxation);
-  const SolverReport report =
-      repeat_sweeps([&](bool measured) { return narrow_.sweep(measured); }, solver.velocity_scale, solver);
-  for_each_block(static_cast<int>(contacts.blocks.size()), [&](int k) {
-    narrow_.read_impulses(contacts.blocks[k], contacts.impulse);
-    system.apply_impulses(k, contacts.impulse);
-    overlaps_[k] = overlaps_of(contacts.blocks[k]);
-  });
+                                                           const SolverOptions& solver, double dt) {
+  SolverReport report;
+  if constexpr (Dim == 2) {
+    narrow_.start(
+        particles, contacts, [&](int begin, int end) { prepare(begin, end, dt); }, offset_,
+        solver.relaxation);
+    report =
+        repeat_sweeps([&](bool measured) { return narrow_.sweep(measured); }, solver.velocity_scale, solver);
+    for_each_block(static_cast<int>(contacts.blocks.size()), [&](int k) {
+      narrow_.read_impulses(contacts.blocks[k], contacts.impulse);
+      system.apply_impulses(k, contacts.impulse);
+      overlaps_[k] = overlaps_of(contacts.blocks[k]);
+    });
+  }
   return report;
 }
 

@@ -77,7 +77,7 @@ class RigidDynamics {
   void prepare(int begin, int end, double dt);
   SolverReport solve(double dt);
   SolverReport solve_in_single_precision(RigidContactSystem<Dim>& system, const SolverOptions& solver,
-                                         double dt) requires(Dim == 2);
+                                         double dt);
   void account_work(double dt);
   void account_contacts();
   Overlaps overlaps_of(const ContactBlock& block) const;
