@@ -22,6 +22,7 @@ libraries  libdeflate-dev          compressed files for ParaView, and pages
 libraries  libeigen3-dev           sparse matrices of contact problems
 python     python3-dev             headers for the Python module
 python     pybind11-dev            the Python module
+tests      zlib1g-dev              reads what our own files hold
 tests      doctest-dev             unit, verification and program tests
 tests      python3-pytest          tests of the Python package
 tests      python3-nbclient        carries out the notebooks of the examples
