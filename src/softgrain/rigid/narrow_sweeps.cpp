@@ -210,12 +210,12 @@ void NarrowSweeps::fill(const RigidContacts<2>& contacts, const ContactBatch& li
 
 /// What changes from step to step; then v += M^-1 H p.
 template <class AnyEight>
-void NarrowSweeps::load(const RigidContacts<2>& contacts, std::span<const double> offset, int begin,
-                        Batch<AnyEight>& batch) {
+void NarrowSweeps::load(const RigidContacts<2>& contacts, std::span<const double> offset,
+                        const ContactBlock& listed, Batch<AnyEight>& batch) {
   for (std::size_t k = 0; k < batch.eights.size(); ++k) {
     AnyEight& next = batch.eights[k];
-    const int c = begin + batch.places[k].begin, count = batch.places[k].count;
-    if (c + eight <= contacts.size()) {
+    const int c = listed.begin() + batch.places[k].begin, count = batch.places[k].count;
+    if (c + eight <= listed.end()) {  // beyond it another thread may be at work
       const WideColumns n = load_wide_columns(&contacts.normal[c]),
                         p = load_wide_columns(&contacts.impulse[c]);
       const auto mine = Integers{0, 1, 2, 3, 4, 5, 6, 7} < count;
@@ -277,8 +277,8 @@ void NarrowSweeps::start(const RigidParticles<2>& particles, const RigidContacts
     }
     velocity_[idle] = {};
     spin_[idle] = 0;
-    load(contacts, offset, begin, block.frictionless);
-    load(contacts, offset, begin, block.frictional);
+    load(contacts, offset, listed, block.frictionless);
+    load(contacts, offset, listed, block.frictional);
   });
 }
 

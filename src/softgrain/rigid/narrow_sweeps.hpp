@@ -66,7 +66,7 @@ class NarrowSweeps {
   void fill(const RigidContacts<2>& contacts, const ContactBatch& listed, int begin, int idle,
             Batch<AnyEight>& batch) const;
   template <class AnyEight>
-  void load(const RigidContacts<2>& contacts, std::span<const double> offset, int begin,
+  void load(const RigidContacts<2>& contacts, std::span<const double> offset, const ContactBlock& listed,
             Batch<AnyEight>& batch);
   template <bool Measured>
   void relax(Eight& contact, LaneViolation& violation);
