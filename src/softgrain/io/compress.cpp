@@ -3,15 +3,14 @@
 #include <libdeflate.h>
 
 #include <memory>
-
-#include "softgrain/core/error.hpp"
+#include <new>
 
 namespace softgrain {
 
 std::string compressed(std::string_view bytes, Container container, int level) {
   const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
       libdeflate_alloc_compressor(level), &libdeflate_free_compressor);
-  if (compressor == nullptr) throw IoError("no memory to compress");
+  if (compressor == nullptr) throw std::bad_alloc();
   const bool gzip = container == Container::gzip;
   const auto bound = gzip ? libdeflate_gzip_compress_bound : libdeflate_zlib_compress_bound;
   const auto compress = gzip ? libdeflate_gzip_compress : libdeflate_zlib_compress;
