@@ -11,6 +11,7 @@
 #include "softgrain/rigid/contact_blocks.hpp"
 
 namespace softgrain {
+
 template <int Dim>
 RigidDynamics<Dim>::RigidDynamics(RigidParticles<Dim> bodies, FrictionRule friction,
                                   RigidStepOptions step_options, double skin)
@@ -35,8 +36,8 @@ StepReport RigidDynamics<Dim>::step(const ForceField<Dim>& field, double dt) {
   drift(particles, dt / 2);  // x_m = x + dt/2 v
   if (renew_stale_lists(reference, particles)) rebuild_contacts();
   kick(field, dt);  // v_free = v + dt M^-1 F(x_m)
-  const SolverReport solver =
-      solve(dt);  // gaps and frames at x_m; v+ = v_free + M^-1 H p,  0 <= u_n + q_n _|_ p_n >= 0
+  // gaps and frames at x_m
+  const SolverReport solver = solve(dt);  // v+ = v_free + M^-1 H p,  0 <= u_n + q_n _|_ p_n >= 0
   account_work(dt);
   drift(particles, dt / 2);  // x = x_m + dt/2 v+
   return report(solver);
