@@ -31,6 +31,12 @@ void parallel_for(int count, const Work& work) {
       count, [](const void* w, int i) { (*static_cast<const Work*>(w))(i); }, &work);
 }
 
+/// work(i) for i = 0, 2, 4, ... on all threads, then for i = 1, 3, 5, ...: where only neighbours share data.
+template <class Work>
+void parallel_alternate(int count, const Work& work) {
+  for (const int first : {0, 1}) parallel_for((count + 1 - first) / 2, [&](int k) { work(first + 2 * k); });
+}
+
 namespace detail {
 /// Items of a loop over many small things that one thread takes at once. Fixed, so that sums over chunks have
 /// the same bits on any number of threads.

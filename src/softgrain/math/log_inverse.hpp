@@ -14,18 +14,13 @@ struct LogInverse {
 
 namespace detail {
 
-/// For x in [1/sqrt 2, sqrt 2], relative error below 1e-15: ln x = 2 artanh s, s = (x - 1)/(x + 1), by the
-/// series of log() in wide.hpp. One division serves both.
+/// For x in [1/sqrt 2, sqrt 2], relative error below 1e-15: ln x = 2 artanh s, s = (x - 1)/(x + 1). One
+/// division serves both.
 template <class T>
 [[gnu::always_inline]] inline void log_inverse_near_one(const T& x, T& log_x, T& inverse) {
   const T sum = x + 1.0, both = 1.0 / (sum * x);
-  const T s = (x - 1.0) * (both * x), z = s * s, w = z * z;
-  const T odd =
-      z * (6.666666666666735130e-01 +
-           w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
-  const T even =
-      w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01));
-  log_x = s * (2.0 + (odd + even));
+  const T s = (x - 1.0) * (both * x);
+  log_x = s * (2.0 + artanh_series(s * s));
   inverse = both * sum;
 }
 

@@ -97,6 +97,19 @@ inline Wide exp(Wide x) {
 }
 inline double exp(double x) { return std::exp(x); }
 
+/// R in 2 artanh s = s (2 + R), R = 2/3 s^2 + 2/5 s^4 + ... fitted for |s| < 0.172; z = s^2. After fdlibm's
+/// e_log.c (Sun Microsystems 1993).
+template <class T>
+[[gnu::always_inline]] inline T artanh_series(const T& z) {
+  const T w = z * z;
+  const T odd =
+      z * (6.666666666666735130e-01 +
+           w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
+  const T even =
+      w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01));
+  return odd + even;
+}
+
 /// Natural logarithm, relative error below 2.3e-16 wherever x is a normal, positive and finite number; NaN
 /// elsewhere, so also at 0 and infinity. After fdlibm's e_log.c (Sun Microsystems 1993), without branches.
 inline Lanes log(Lanes x) {
@@ -109,15 +122,10 @@ inline Lanes log(Lanes x) {
   const Lanes m = reinterpret_cast<Lanes>(bits - (shifted & 0xfff0000000000000) + one);
   constexpr double two_52 = 0x1p52;  // an integer in the low bits of 2^52 reads as 2^52 + integer
   const Lanes k = reinterpret_cast<Lanes>((shifted >> 52) | 0x4330000000000000) - (two_52 + 1023.0);
-  // ln(1 + f) = f - f^2/2 + s (f^2/2 + R(s^2)), s = f / (2 + f), R = 2/3 s^2 + 2/5 s^4 + ... fitted.
-  const Lanes f = m - 1.0, s = f / (2.0 + f), z = s * s, w = z * z;
-  const Lanes odd =
-      z * (6.666666666666735130e-01 +
-           w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
-  const Lanes even =
-      w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01));
+  // ln(1 + f) = f - f^2/2 + s (f^2/2 + R(s^2)), s = f / (2 + f)
+  const Lanes f = m - 1.0, s = f / (2.0 + f);
   const Lanes half_f2 = 0.5 * f * f;
-  const Lanes result = k * ln2_high - ((half_f2 - (s * (half_f2 + (odd + even)) + k * ln2_low)) - f);
+  const Lanes result = k * ln2_high - ((half_f2 - (s * (half_f2 + artanh_series(s * s)) + k * ln2_low)) - f);
   const auto good = (x >= std::numeric_limits<double>::min()) & (x <= std::numeric_limits<double>::max());
   return good ? result : splat(std::numeric_limits<double>::quiet_NaN());
 }

@@ -171,11 +171,9 @@ void ElasticContacts::apply_impulse(int contact, const Vec<2>& dp) {
 /// Every second group on all threads, then the others.
 template <class Work>
 void ElasticContacts::for_each_in_order(const Work& work) {
-  for (int half = 0; half < 2; ++half)
-    parallel_for((levels_.groups() + 1 - half) / 2, [&](int k) {
-      const int group = 2 * k + half;
-      for (int c = levels_.begin[group]; c < levels_.begin[group + 1]; ++c) work(levels_.contact[c], group);
-    });
+  parallel_alternate(levels_.groups(), [&](int group) {
+    for (int c = levels_.begin[group]; c < levels_.begin[group + 1]; ++c) work(levels_.contact[c], group);
+  });
 }
 
 void ElasticContacts::apply_impulses(std::span<const Vec<2>> impulse) {

@@ -46,13 +46,9 @@ LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, const O
 /// work(strip) for all even strips, then for all odd ones.
 template <class Work>
 void LumpedContacts::for_each_strip(const Work& work) const {
-  for (const int first : {0, 1}) {
-    const int count = (strips_.count() + 1 - first) / 2;
-    if (size() >= least_for_threads)
-      parallel_for(count, [&](int k) { work(first + 2 * k); });
-    else
-      for (int k = 0; k < count; ++k) work(first + 2 * k);
-  }
+  if (size() >= least_for_threads) return parallel_alternate(strips_.count(), work);
+  for (const int first : {0, 1})
+    for (int strip = first; strip < strips_.count(); strip += 2) work(strip);
 }
 
 LumpedContacts::Row LumpedContacts::row_of(const OutlineContact& contact, const OutlineState& outline,

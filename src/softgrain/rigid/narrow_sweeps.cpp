@@ -113,6 +113,11 @@ struct NarrowSweeps::Bodies {
   FloatColumns a, b;
 };
 
+void NarrowSweeps::turn(const Eight& c, Floats s_a, Floats s_b, Floats p_t) {
+  scatter(s_a - inertia_ratio_ * c.inverse_a * p_t, spin_.data(), c.a);
+  scatter(s_b - inertia_ratio_ * c.inverse_b * p_t, spin_.data(), c.b);
+}
+
 /// Per contact: reads 36 B of contact and 16 B of velocities, writes 4 B and 16 B.
 template <bool Measured>
 void NarrowSweeps::relax(Eight& c, LaneViolation& violation) {
@@ -146,9 +151,7 @@ void NarrowSweeps::relax(FrictionalEight& c, LaneViolation& violation) {
   c.p_n = p_n;
   c.p_t = p_t;
   bodies.apply(dp_n * c.n_x - dp_t * c.n_y, dp_n * c.n_y + dp_t * c.n_x);
-  // ds = -kappa p_t / m on both
-  scatter(s_a - kappa * c.inverse_a * dp_t, spin_.data(), c.a);
-  scatter(s_b - kappa * c.inverse_b * dp_t, spin_.data(), c.b);
+  turn(c, s_a, s_b, dp_t);
   if constexpr (Measured) {
     const Floats W_nn = c.inverse_a + c.inverse_b;
     const Floats v_n = W_nn * dp_n, v_t = (1 + kappa) * W_nn * dp_t;
@@ -236,10 +239,7 @@ void NarrowSweeps::load(const RigidContacts<2>& contacts, std::span<const double
     Bodies bodies(velocity_.data(), next);
     if constexpr (std::is_same_v<AnyEight, FrictionalEight>) {
       bodies.apply(next.p_n * next.n_x - next.p_t * next.n_y, next.p_n * next.n_y + next.p_t * next.n_x);
-      const Floats turn = inertia_ratio_ * next.p_t;
-      const Floats s_a = gather(spin_.data(), next.a), s_b = gather(spin_.data(), next.b);
-      scatter(s_a - next.inverse_a * turn, spin_.data(), next.a);
-      scatter(s_b - next.inverse_b * turn, spin_.data(), next.b);
+      turn(next, gather(spin_.data(), next.a), gather(spin_.data(), next.b), next.p_t);
     } else {
       bodies.apply(next.p_n * next.n_x, next.p_n * next.n_y);
     }

@@ -68,6 +68,8 @@ class NarrowSweeps {
   template <class AnyEight>
   void load(const RigidContacts<2>& contacts, std::span<const double> offset, const ContactBlock& listed,
             Batch<AnyEight>& batch);
+  /// ds = -kappa p_t/m on both bodies, whose spins are s_a and s_b.
+  void turn(const Eight& contact, Floats s_a, Floats s_b, Floats p_t);
   template <bool Measured>
   void relax(Eight& contact, LaneViolation& violation);
   template <bool Measured>
