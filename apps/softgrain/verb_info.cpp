@@ -73,7 +73,8 @@ Json describe_run(const RunPaths& paths) {
   Json run = Json::parse(read_file(paths.run_file()));
   const int process = running_process(paths);
   if (process != 0) run["process"] = process;
-  if (process == 0 && run.at("state") == "running") run["state"] = "killed";
+  if (process == 0 && run.at("state") == "running")
+    run["state"] = fs::exists(paths.lock_file()) ? "killed" : "running or killed";  // no locks there
   if (const auto row = read_last_row(paths.series_file())) run["last_row"] = json_of(*row);
   run["snapshots"] = Json::array();
   for (const SnapshotFile& file : list_snapshots(paths)) run["snapshots"].push_back(file.path.string());

@@ -96,6 +96,8 @@ void carry_out(const RunRequest& request, const RunDirectory& directory, const R
   {
     Progress progress(options.quiet ? ProgressStyle::none : options.progress);
     if (!options.quiet) progress.message("results go to " + directory.paths().root.string());
+    if (!options.quiet && !options.verbose && !directory.caution().empty())
+      progress.message(directory.caution());
     if (const std::string caution = caution_of(request.the_case); !caution.empty() && !options.quiet)
       progress.message(caution);
     outcome = record_run(*simulation, directory, request, progress, signals);
@@ -105,6 +107,11 @@ void carry_out(const RunRequest& request, const RunDirectory& directory, const R
   if (page) write_report({paths.root}, paths.report_file());
   if (!options.quiet) print_result(closing_words(outcome.record, paths, page));
   if (outcome.exit_code != 0) throw ExitCode{outcome.exit_code};
+}
+
+/// run.json is a run's sign; where somebody removed it, the snapshots still hold all that going on needs.
+bool is_begun(const RunPaths& paths) {
+  return fs::exists(paths.run_file()) || !list_snapshots(paths).empty();
 }
 
 /// "squeeze_run" beside "squeeze.toml".
@@ -122,7 +129,7 @@ void run_case(const RunArguments& arguments) {
   std::error_code no_such_file;
   require(arguments.resume || !fs::equivalent(source.path, paths.case_file(), no_such_file),
           "{} lies in the run's directory and would be overwritten; choose another with -o", source.path);
-  const bool going_on = arguments.resume && fs::exists(paths.run_file());
+  const bool going_on = arguments.resume && is_begun(paths);
   const bool has_case =
       going_on && fs::exists(paths.case_file());  // not when the disk was full from the beginning
   require(!has_case || read_file(paths.case_file()) == request.case_text,
@@ -137,7 +144,12 @@ void run_case(const RunArguments& arguments) {
 
 void resume_run(const RunOptions& options) {
   const RunPaths paths{options.directory};
-  require(fs::exists(paths.run_file()), "{} is not a run's directory: it has no run.json", options.directory);
+  require(is_begun(paths), "{} is not a run's directory: it has neither run.json nor snapshots",
+          options.directory);
+  require(fs::exists(paths.case_file()),
+          "{} has no case.toml; `softgrain run CASE -o {} --resume` with the case that it was begun with "
+          "writes it again",
+          options.directory, options.directory);
   RunRequest request = request_of(options, true);
   const RunDirectory directory(paths.root, RunDirectory::IfNotEmpty::keep);
   request.the_case = read_case(paths.case_file().string());

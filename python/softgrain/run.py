@@ -32,9 +32,7 @@ class Snapshot:
     @classmethod
     def read(cls, path: str | Path) -> "Snapshot":
         """Reads one snapshot file. Raises OSError if it is damaged or missing."""
-        import h5py
-
-        with h5py.File(path, "r") as file:
+        with _open_hdf5(path) as file:
             if "scene/particles/position" not in file:
                 raise OSError(f"{path}: no snapshot: it has no /scene/particles/position")
             scene = file["scene"]
@@ -87,8 +85,12 @@ class Run:
 
     @cached_property
     def snapshots(self) -> list[Path]:
-        """Paths of the snapshots, oldest first."""
-        return sorted((self.path / "snap").glob("s*.h5"))
+        """Paths of the snapshots, oldest first: `s000123.h5` is of step 123, whatever the width of the number."""
+        return [path for _, path in sorted(_numbered(self.path / "snap", "s", ".h5").items())]
+
+    def vtk_files(self, kind: str) -> dict[int, Path]:
+        """Step -> `vtk/KIND_000123.vtp`, as far as they are there; kind: particles, contacts or walls."""
+        return _numbered(self.path / "vtk", f"{kind}_", ".vtp")
 
     @cached_property
     def _table(self):
@@ -145,6 +147,22 @@ def html_table(caption: str, facts: dict) -> str:
     """Names and values for a notebook; text stays text."""
     rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(str(value))}</td></tr>" for name, value in facts.items())
     return f"<table><caption>{escape(caption)}</caption>{rows}</table>"
+
+
+def _numbered(folder, prefix, suffix):
+    """Step -> path of the files whose name is prefix, digits, suffix. The digits are as many as the last step of a run has."""
+    numbers = ((path.name[len(prefix):-len(suffix)], path) for path in folder.glob(f"{prefix}*{suffix}"))
+    return {int(number): path for number, path in numbers if number.isdigit()}
+
+
+def _open_hdf5(path):
+    """To read, without a lock: snapshots never change, and not every file system has locks."""
+    import h5py
+
+    try:
+        return h5py.File(path, "r", locking=False)
+    except (TypeError, ValueError):  # h5py before 3.5, HDF5 before 1.10.7: the environment may say so
+        return h5py.File(path, "r")
 
 
 def _arrays(scene, name):

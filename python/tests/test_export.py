@@ -81,6 +81,7 @@ class Particles(Temporary):
         for (comment, rows), snapshot in zip(frames, self.run_of_bonds):
             self.assertIn("Properties=species:S:1:pos:R:3:radius:R:1:pressure:R:1 ", comment)
             self.assertIn(f" Step={snapshot.step}", comment)
+            self.assertEqual({row[0] for row in rows}, {"X"})  # ASE reads a name of its elements or X, nothing else
             numbers = np.array([row[1:] for row in rows], float)
             np.testing.assert_allclose(numbers[:, :2], snapshot.particles["position"], rtol=1e-8)
             np.testing.assert_allclose(numbers[:, 4], snapshot.particles["pressure"], rtol=1e-8)
@@ -173,6 +174,18 @@ class Paraview(Temporary):
             self.assertEqual(len(entries), 3)
             for entry in entries:
                 self.assertTrue((scene.parent / entry.get("file")).exists())
+
+    def test_frames_are_found_however_many_digits_their_steps_have(self):
+        for folder, kind in (("snap", "s"), *(("vtk", f"{kind}_") for kind in ("particles", "contacts", "walls"))):
+            last = max((self.folder / folder).glob(f"{kind}*"))  # as a run of 10^7 steps names it
+            last.rename(last.with_name(last.name.replace(kind, f"{kind}00")))
+        self.run_of_bonds = softgrain.open(self.folder)
+        self.assertEqual([snapshot.step for snapshot in self.run_of_bonds], [0, 11200, 22400])
+        _, scene, _ = self.export("--to=paraview")
+        for kind in ("particles", "contacts", "walls"):
+            entries = ElementTree.parse(scene.with_name(f"{kind}.pvd")).findall(".//DataSet")
+            self.assertEqual(len(entries), 3)
+            self.assertTrue(all((scene.parent / entry.get("file")).exists() for entry in entries))
 
     def test_the_script_runs_and_shows_each_series_with_one_range_of_pressures(self):
         """With a stand-in for ParaView that takes every call and writes down the readers and the range."""

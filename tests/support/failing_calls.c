@@ -1,7 +1,8 @@
 /* LD_PRELOAD shim: makes one call of the operating system fail, to see what the program does then.
  *
- *   SOFTGRAIN_FAIL=write:17     the 17th write fails, once; also fsync, rename, open, malloc
+ *   SOFTGRAIN_FAIL=write:17     the 17th write fails, once; also fsync, rename, open, flock, malloc
  *   SOFTGRAIN_FAIL=write:17+    it and every later one, as on a disk that stays full
+ *   SOFTGRAIN_FLOCK_ERROR=38    errno of a flock that fails
  *   SOFTGRAIN_FAIL_COUNT=FILE   at the end, how many calls there were of the kind asked for
  *
  * Calls count from main on; calls inside libc do not pass here, nor count. Memory that HDF5 asks for does not
@@ -15,6 +16,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -91,6 +93,12 @@ int fsync(int file) {
 int rename(const char* from, const char* to) {
   if (fails("rename")) return errno = EACCES, -1;
   return NEXT(rename)(from, to);
+}
+
+int flock(int file, int operation) {
+  const char* error = getenv("SOFTGRAIN_FLOCK_ERROR");
+  if (fails("flock")) return errno = error == NULL ? ENOSYS : atoi(error), -1;
+  return NEXT(flock)(file, operation);
 }
 
 static int mode_of(int flags, va_list arguments) {

@@ -18,15 +18,15 @@ def write_scene(run, folder):
     folder.mkdir(parents=True, exist_ok=True)
     snapshots = [run[i] for i in range(len(run))]
     for kind in ("particles", "contacts", "walls"):
-        frames = [(s.time, f"../vtk/{kind}_{s.step:06d}.vtp") for s in snapshots]
-        frames = [(time, file) for time, file in frames if (folder / file).exists()]
+        files = run.vtk_files(kind)
+        frames = [(s.time, f"../vtk/{files[s.step].name}") for s in snapshots if s.step in files]
         if not frames:
             raise ValueError(f"{run.path} has no vtk/{kind}_*.vtp: it was run with output.vtk = false")
         (folder / f"{kind}.pvd").write_text(pvd_text(frames))
-    grains = []
+    grains, width = [], max(6, len(str(snapshots[-1].step)))
     for snapshot in snapshots:
         if snapshot.outlines:
-            grains.append((snapshot.time, f"grains_{snapshot.step:06d}.vtp"))
+            grains.append((snapshot.time, f"grains_{snapshot.step:0{width}}.vtp"))
             (folder / grains[-1][1]).write_text(grains_vtp(snapshot))
     (folder / "grains.pvd").write_text(pvd_text(grains))
     low, high = pressure_range(snapshots)

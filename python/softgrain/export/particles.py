@@ -7,9 +7,9 @@ AXES = {2: ("x", "y"), 4: ("xx", "xy", "yx", "yy")}
 
 
 def write_xyz(snapshots, file):
-    """Extended XYZ: species, x y z [m], then radius, grain, pressure as far as they are recorded."""
+    """Extended XYZ: species X (ASE's name of what is no element), x y z [m], then radius, grain, pressure as far as they are recorded."""
     for snapshot in snapshots:
-        columns = {"species": ["grain"] * _count(snapshot), **_place(snapshot), **_marks(snapshot)}
+        columns = {"species": ["X"] * _count(snapshot), **_place(snapshot), **_marks(snapshot)}
         kinds = "species:S:1:pos:R:3" + "".join(f":{name}:{_kind(values)}:1" for name, values in
                                                  _marks(snapshot).items())
         (x0, x1), (y0, y1), (z0, z1) = box(snapshot)

@@ -68,8 +68,10 @@ void BpmCompaction::judge(const StepReport& report) {
   const double most = case_.loading.max_overlap;
   const bool close_packed =
       report.overlap_mean > close_packing_overlap && solid_fraction() > close_packing_fraction;
-  if (close_packed || (most > 0 && report.overlap_mean >= most))
-    drive_.state.ended = true;
+  if (most > 0 && report.overlap_mean >= most)
+    drive_.state.ended = WallDrive::End::max_overlap;
+  else if (close_packed)
+    drive_.state.ended = WallDrive::End::close_packing;
   else if (report.overlap_mean > largest_overlap)
     throw NumericalError(fmt::format(
         "primaries overlap by {:.2g} of their radius in the mean, far from their close packing; use "
@@ -78,14 +80,20 @@ void BpmCompaction::judge(const StepReport& report) {
 }
 
 std::string BpmCompaction::early_end() const {
-  if (std::string end = drive_.early_end(step_); !end.empty() || !drive_.state.ended) return end;
-  if (case_.loading.max_overlap > 0 && solid_fraction() <= close_packing_fraction)
-    return "loading.max_overlap is reached";
+  if (drive_.state.ended != WallDrive::End::close_packing) return drive_.early_end(step_);
   return fmt::format(
       "the rigid primaries fill {:.3f} of the box, their random close packing, and overlap by more than {} "
       "of "
       "their radius in the mean: no smaller box holds them",
       solid_fraction(), close_packing_overlap);
+}
+
+PathOutcome BpmCompaction::outcome() const {
+  if (drive_.state.ended != WallDrive::End::close_packing) return drive_.outcome(step_);
+  return {
+      .completed = false,
+      .shortfall = fmt::format("the path ends at a strain of {:.4g}, before loading.max_strain {:.4g}: {}",
+                               strain(), case_.loading.max_strain, early_end())};
 }
 
 double BpmCompaction::width() const {

@@ -20,6 +20,7 @@ class BpmCompaction final : public BpmSimulation {
 
   std::vector<Quantity> observe() override;
   std::string early_end() const override;
+  PathOutcome outcome() const override;
 
   const BoxSample& sample() const { return box_; }
   /// Furthest that a grain was moved from its place in the sample, over its radius.

@@ -65,8 +65,9 @@ double BpmSimulation::plate_distance() const {
 
 StepReport BpmSimulation::step() {
   const double dt = case_.time.step;
+  const double approach = drive_.approach_speed(step_, height_start_ - plate_distance());
   for (int w = 0; w < static_cast<int>(dynamics_.particles.walls.size()); ++w)
-    set_wall_velocity(dynamics_.particles, w, drive_.velocity(dynamics_.particles.walls[w], w, step_));
+    set_wall_velocity(dynamics_.particles, w, drive_.velocity(dynamics_.particles.walls[w], w, approach));
   dynamics_.options.solver.max_sweeps = case_.solver.max_sweeps * (step_ == 0 ? first_step_factor : 1);
   const StepReport report = dynamics_.step(
       [&](const RigidParticles<2>& particles, std::span<Vec<2>> force) {
@@ -236,9 +237,9 @@ Checkpoint BpmSimulation::checkpoint() const {
   std::vector<double> sums(sums_.impulse.begin(), sums_.impulse.end());
   sums.insert(sums.end(),
               {sums_.duration, sums_.wall_work, sums_.dissipation, sums_.energy_start, drive_.state.stress,
-               drive_.state.ended ? 1.0 : 0.0, sums_.between, sums_.friction});
+               static_cast<double>(drive_.state.ended), sums_.between, sums_.friction});
   state.arrays["sums"] = {1, std::move(sums)};
-  drive_.save_hold(state);
+  drive_.save(state);
   return state;
 }
 
@@ -270,10 +271,10 @@ void BpmSimulation::restore(const Checkpoint& state) {
   sums_.dissipation = sums[6][0];
   sums_.energy_start = sums[7][0];
   drive_.state.stress = sums[8][0];
-  drive_.state.ended = sums[9][0] != 0;
+  drive_.state.ended = static_cast<WallDrive::End>(sums[9][0]);
   sums_.between = sums[10][0];
   sums_.friction = sums[11][0];
-  drive_.restore_hold(state);
+  drive_.restore(state);
   step_ = state.step;
 }
 

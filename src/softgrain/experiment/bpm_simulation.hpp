@@ -27,6 +27,7 @@ class BpmSimulation : public Simulation {
   std::int64_t steps_done() const override { return step_; }
   std::int64_t steps_planned() const override { return drive_.steps_planned(); }
   bool at_turning_point() const override { return drive_.at_turning_point(step_); }
+  PathOutcome outcome() const override { return drive_.outcome(step_); }
   void follow(PlateMotion motion) override { drive_.follow(std::move(motion)); }
   StepReport step() override;
   SolvedContactProblem step_and_catch_problem() override;

@@ -19,7 +19,10 @@ class CompactionPath : public PlatePath {
               [=](double strain) { return -height * std::expm1(-strain); }) {}
 
   std::int64_t steps() const override { return legs_.steps(); }
-  double plate_velocity(std::int64_t step) const override { return legs_.velocity(step); }
+  double plate_velocity(std::int64_t step, double travel) const override {
+    return legs_.velocity(step, travel);
+  }
+  bool approaches(std::int64_t step) const override { return legs_.approaches(step); }
   int leg(std::int64_t step) const override { return legs_.leg(step); }
   double strain(double height_start, double height) const override { return std::log(height_start / height); }
 

@@ -17,7 +17,10 @@ class DiametralPath final : public PlatePath {
   DiametralPath(const Case::Loading& loading, double grain_radius, double dt);
 
   std::int64_t steps() const override { return legs_.steps(); }
-  double plate_velocity(std::int64_t step) const override { return legs_.velocity(step); }
+  double plate_velocity(std::int64_t step, double travel) const override {
+    return legs_.velocity(step, travel);
+  }
+  bool approaches(std::int64_t step) const override { return legs_.approaches(step); }
   int leg(std::int64_t step) const override { return legs_.leg(step); }
   double strain(double height_start, double height) const override {
     return grain_strain(height_start - height, radius_);

@@ -14,7 +14,7 @@ GivenPath::GivenPath(std::shared_ptr<const PlatePath> own, PlateMotion motion, d
   steps_ = std::max<std::int64_t>(1, std::llround(motion_.duration / dt));
 }
 
-double GivenPath::plate_velocity(std::int64_t step) const {
+double GivenPath::plate_velocity(std::int64_t step, double) const {
   if (step == asked_for_) return answer_;
   const double time = static_cast<double>(step) * dt_;
   answer_ = motion_.velocity(time);

@@ -14,7 +14,8 @@ class GivenPath final : public PlatePath {
 
   std::int64_t steps() const override { return steps_; }
   /// Asks the motion once a step. Raises UsageError for an answer that is not finite.
-  double plate_velocity(std::int64_t step) const override;
+  double plate_velocity(std::int64_t step, double travel) const override;
+  bool approaches(std::int64_t step) const override { return plate_velocity(step, 0) < 0; }
   std::array<double, 4> shares() const override { return own_->shares(); }
   int leg(std::int64_t) const override { return 0; }
   double strain(double height_start, double height) const override {

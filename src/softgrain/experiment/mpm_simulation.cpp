@@ -55,8 +55,9 @@ double MpmSimulation<Dynamics>::box_width() const {
 
 template <class Dynamics>
 StepReport MpmSimulation<Dynamics>::step() {
+  const double approach = drive_.approach_speed(step_, height_start_ - plate_distance());
   for (int w = 0; w < static_cast<int>(dynamics_.walls.size()); ++w)
-    dynamics_.walls[w].velocity = drive_.velocity(dynamics_.walls[w], w, step_);
+    dynamics_.walls[w].velocity = drive_.velocity(dynamics_.walls[w], w, approach);
   const SoftStepReport soft = dynamics_.step(dt_);
   if (const int grain = runaway_grain(dynamics_.grains, dt_); grain >= 0)
     throw NumericalError(
@@ -211,10 +212,10 @@ Checkpoint MpmSimulation<Dynamics>::checkpoint() const {
   const WorkBudget& work = dynamics_.work;
   std::vector<double> sums(sums_.impulse.begin(), sums_.impulse.end());
   sums.insert(sums.end(), {sums_.duration, sums_.iterations, sums_.rejected, drive_.state.stress,
-                           drive_.state.ended ? 1.0 : 0.0, dynamics_.impulse_time, work.walls, work.gravity,
-                           work.internal, work.contacts, work.inertia, work.friction});
+                           static_cast<double>(drive_.state.ended), dynamics_.impulse_time, work.walls,
+                           work.gravity, work.internal, work.contacts, work.inertia, work.friction});
   state.arrays["sums"] = {1, std::move(sums)};
-  drive_.save_hold(state);
+  drive_.save(state);
   return state;
 }
 
@@ -270,8 +271,8 @@ void MpmSimulation<Dynamics>::restore(const Checkpoint& state) {
   sums_.iterations = sums[5][0];
   sums_.rejected = sums[6][0];
   drive_.state.stress = sums[7][0];
-  drive_.state.ended = sums[8][0] != 0;
-  drive_.restore_hold(state);
+  drive_.state.ended = static_cast<WallDrive::End>(sums[8][0]);
+  drive_.restore(state);
   dynamics_.impulse_time = sums[9][0];
   dynamics_.work = {.walls = sums[10][0],
                     .gravity = sums[11][0],

@@ -61,6 +61,15 @@ struct PlateMotion {
       velocity;  ///< of time [s]: rate of the distance of the plates [m/s], negative while loading
 };
 
+/// Whether a finished simulation did what its case asks for.
+struct PathOutcome {
+  /// It ended at the last strain or packing fraction, or at another end that the case names.
+  bool completed = true;
+  /// What was not reached, or not kept, and why, for the user; "" if nothing. A completed path may have one:
+  /// it ended at its last strain, and a stress that would have ended it before was not reached.
+  std::string shortfall;
+};
+
 struct SolvedContactProblem;
 
 /// The one abstract class: an experiment with a model of a grain, advanced step by step.
@@ -75,6 +84,8 @@ class Simulation {
   virtual std::int64_t steps_planned() const = 0;
   /// Why the simulation has finished before its last planned step, for the user; "" if it has not.
   virtual std::string early_end() const { return ""; }
+  /// What a finished simulation made of its path; completed and silent before.
+  virtual PathOutcome outcome() const { return {}; }
   /// True after the last step before the load turns: a state worth keeping.
   virtual bool at_turning_point() const = 0;
   /// Before the first step: the plates leave the case's loading path for this motion. Raises UsageError.

@@ -84,7 +84,7 @@ void UpdatedLagrangianSimulation::follow(PlateMotion motion) {
 }
 
 StepReport UpdatedLagrangianSimulation::step() {
-  dynamics_.walls[top_wall].velocity = {0, path_->plate_velocity(step_)};
+  dynamics_.walls[top_wall].velocity = {0, path_->plate_velocity(step_, height_start_ - plate_distance())};
   const SoftStepReport soft = dynamics_.step(dt_);
   ++step_;
   sums_.force_bottom -= dynamics_.wall_impulse(bottom_wall)[1];

@@ -17,10 +17,13 @@ namespace softgrain {
 class WallDrive {
  public:
   /// With the position of the walls all that a checkpoint needs.
+  /// Why a run ends before the end of path and hold; the numbers stand in checkpoints.
+  enum class End : int { none, max_stress, max_overlap, close_packing };
   struct State {
-    double stress = 0;             ///< sigma, vertical, the mean over 0.1 % of strain at the full speed [Pa]
-    bool ended = false;            ///< before the end of path and hold
+    double stress = 0;  ///< sigma, vertical, the mean over 0.1 % of strain at the full speed [Pa]
+    End ended = End::none;
     std::int64_t hold_start = -1;  ///< first step of the hold; -1: none yet
+    double largest = 0;            ///< sigma so far [Pa]
   };
 
   /// Raises UsageError for a stress that is held for no time.
@@ -32,31 +35,34 @@ class WallDrive {
 
   /// Steps of the whole path; the hold of a stress ends before.
   std::int64_t steps_planned() const { return path_->steps(); }
-  bool finished(std::int64_t step) const { return state.ended || step >= end(); }
+  bool finished(std::int64_t step) const { return state.ended != End::none || step >= end(); }
   double progress(std::int64_t step) const {
     return finished(step) ? 1 : static_cast<double>(step) / static_cast<double>(end());
   }
   /// Number of the leg of a step; the hold of a stress is one.
   int leg(std::int64_t step) const;
   bool at_turning_point(std::int64_t step) const { return step > 0 && leg(step) != leg(step - 1); }
-  /// Velocity of a wall in the coming step [m/s].
-  Vec<2> velocity(const Wall<2>& wall, int index, std::int64_t step) const;
+  /// Speed of the plates towards each other in the coming step [m/s], after they have come `travel` [m].
+  double approach_speed(std::int64_t step, double travel) const;
+  /// Velocity of a wall [m/s] for that speed.
+  Vec<2> velocity(const Wall<2>& wall, int index, double approach_speed) const;
   double strain(double height_start, double height) const { return path_->strain(height_start, height); }
 
   /// Takes the vertical stress [Pa] in a box of this height [m] that was found in the last of `steps_done`.
   void watch(double stress, double height, std::int64_t steps_done);
   /// Why the run ends before its last planned step; "" if that has other reasons.
   std::string early_end(std::int64_t step) const;
-  /// The start of a hold, to and from an array that a checkpoint has only then.
-  void save_hold(Checkpoint& checkpoint) const;
-  void restore_hold(const Checkpoint& checkpoint);
+  /// Which stresses of the case were not reached.
+  PathOutcome outcome(std::int64_t step) const;
+  /// What of the state stands in no other array of a checkpoint; one without it is of an earlier version.
+  void save(Checkpoint& checkpoint) const;
+  void restore(const Checkpoint& checkpoint);
 
   State state;
 
  private:
   bool holds() const { return state.hold_start >= 0; }
   std::int64_t end() const { return holds() ? state.hold_start + hold_steps_ : path_->steps(); }
-  double plate_velocity(std::int64_t step) const;
 
   Case::Loading loading_;
   std::shared_ptr<const PlatePath> path_;  // shared by copies

@@ -58,11 +58,15 @@ void refuse_if_not_empty(const RunPaths& paths) {
           paths.root.string());
 }
 
-/// False when another process holds the lock.
-bool try_lock(const Descriptor& file, const RunPaths& paths, int kind) {
-  if (::flock(file.number(), kind | LOCK_NB) == 0) return true;
-  if (errno == EWOULDBLOCK) return false;
-  throw IoError(fmt::format("{}: cannot lock: {}", paths.lock_file().string(), std::strerror(errno)));
+enum class Lock { ours, of_another, impossible };
+
+/// Not every file system has locks: those of clusters are often mounted without, and say so in many ways.
+Lock try_lock(const Descriptor& file, int kind) {
+  int result = 0;
+  do result = ::flock(file.number(), kind | LOCK_NB);
+  while (result != 0 && errno == EINTR);
+  if (result == 0) return Lock::ours;
+  return errno == EWOULDBLOCK ? Lock::of_another : Lock::impossible;
 }
 
 int process_named_in(const Descriptor& file) {
@@ -112,8 +116,17 @@ void RunDirectory::leave_nothing() const {
 
 void RunDirectory::lock() {
   Descriptor file = open_file(paths_.lock_file(), O_RDWR | O_CREAT);
+  const Lock lock = try_lock(file, LOCK_EX);
+  if (lock == Lock::impossible) {
+    caution_ = fmt::format(
+        "warning: {} cannot be locked ({}): see yourself that no second run writes there at the same time",
+        paths_.root.string(), std::strerror(errno));
+    std::error_code ignored;
+    fs::remove(paths_.lock_file(), ignored);
+    return;
+  }
   struct stat status {};
-  const bool ours = try_lock(file, paths_, LOCK_EX) && ::fstat(file.number(), &status) == 0 &&
+  const bool ours = lock == Lock::ours && ::fstat(file.number(), &status) == 0 &&
                     status.st_nlink > 0;  // 0: removed by the run that had it
   refuse_if_in_use(paths_, !ours, process_named_in(file));
   lock_ = std::move(file);
@@ -137,7 +150,7 @@ void RunDirectory::clear() const {
 int running_process(const RunPaths& paths) {
   if (!fs::exists(paths.lock_file())) return 0;
   const Descriptor file = open_file(paths.lock_file(), O_RDONLY);
-  return try_lock(file, paths, LOCK_SH) ? 0 : process_named_in(file);
+  return try_lock(file, LOCK_SH) == Lock::of_another ? process_named_in(file) : 0;
 }
 
 }  // namespace softgrain

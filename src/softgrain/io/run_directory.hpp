@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "softgrain/io/file.hpp"
@@ -32,7 +33,8 @@ struct SnapshotFile {
 std::vector<SnapshotFile> list_snapshots(const RunPaths& paths);
 
 /// A run's directory, made when missing, and ours alone until this object goes: a second run is refused
-/// (UsageError, naming the other's process). Where no run was begun (no run.json), nothing of it stays.
+/// (UsageError, naming the other's process). Where no run was begun (no run.json), nothing of it stays. On a
+/// file system without locks (flock) the directory is taken all the same, and caution() says so.
 class RunDirectory {
  public:
   enum class IfNotEmpty { refuse, keep };
@@ -42,6 +44,9 @@ class RunDirectory {
   ~RunDirectory();
 
   const RunPaths& paths() const { return paths_; }
+
+  /// "warning: ..." where a second run could not be refused; "" otherwise.
+  const std::string& caution() const { return caution_; }
 
   /// Removes an earlier run's results and nothing else.
   void clear() const;
@@ -54,9 +59,10 @@ class RunDirectory {
   RunPaths paths_;
   std::vector<std::filesystem::path> made_;  ///< folders that were not there before, innermost first
   Descriptor lock_;
+  std::string caution_;
 };
 
-/// Process that runs in the directory now; 0 for none.
+/// Process that runs in the directory now; 0 for none, or where the file system has no locks.
 int running_process(const RunPaths& paths);
 
 }  // namespace softgrain

@@ -131,6 +131,8 @@ RunReport RunRecorder::resume(Simulation& simulation) {
   last_row_ = read_last_row(paths_.series_file()).value_or(std::vector<Quantity>{});
   log(fmt::format("resume at step {} from {}", snapshot.checkpoint.step, last_snapshot_.string()));
   frames_ = frames_before(snapshot.checkpoint.step, paths_);
+  if (request_.the_case.output.vtk) fs::create_directories(paths_.vtk_folder());
+  if (!fs::exists(paths_.case_file())) write_file(paths_.case_file(), request_.case_text);
   save_scene(simulation, snapshot.scene);
   write_record(simulation);
   return snapshot.report;
@@ -237,6 +239,7 @@ RunOutcome record_run(Simulation& simulation, const RunDirectory& directory, con
     report = recorder.resume(simulation);  // outside: a run that cannot be resumed stays as it was
   try {
     if (!resuming) recorder.begin(simulation);
+    if (!directory.caution().empty()) recorder.log(directory.caution());
     run(simulation, recorder, report);
     const int exit_code = recorder.end(simulation);
     return {exit_code, recorder.record()};

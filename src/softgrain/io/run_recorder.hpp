@@ -35,6 +35,8 @@ class RunRecorder final : public Recorder {
  public:
   RunRecorder(const RunPaths& paths, RunRequest request, Progress& progress, SignalWatch& signals);
 
+  /// A line of log.txt.
+  void log(const std::string& text);
   /// Writes the first state.
   void begin(Simulation& simulation);
   /// Restores the newest snapshot that is intact and returns the report up to it; says which ones it skipped
@@ -54,7 +56,6 @@ class RunRecorder final : public Recorder {
  private:
   double wall_seconds() const;
   bool stop_wanted() const;
-  void log(const std::string& text);
   Snapshot newest_intact_snapshot();
   void write_row(Simulation& simulation);
   void save(const Simulation& simulation);

@@ -25,7 +25,7 @@ TEST_CASE("a given motion is asked once a step, at its beginning") {
       given({.duration = 1, .velocity = [&](double time) { return ++asked, -2 * time; }}, 0.25);
   CHECK(path.steps() == 4);
   for (int step = 0; step < path.steps(); ++step)
-    for (int wall = 0; wall < 4; ++wall) CHECK(path.plate_velocity(step) == -0.5 * step);
+    for (int wall = 0; wall < 4; ++wall) CHECK(path.plate_velocity(step, 0) == -0.5 * step);
   CHECK(asked == 4);
 }
 
@@ -39,5 +39,5 @@ TEST_CASE("a given motion without an end or without a speed is refused") {
   for (const double duration : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
     CHECK_THROWS_AS(given({.duration = duration, .velocity = [](double) { return -1; }}, 0.5), UsageError);
   const GivenPath path = given({.duration = 1, .velocity = [](double) { return std::nan(""); }}, 0.5);
-  CHECK_THROWS_AS(path.plate_velocity(0), UsageError);
+  CHECK_THROWS_AS(path.plate_velocity(0, 0), UsageError);
 }

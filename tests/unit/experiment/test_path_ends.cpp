@@ -1,0 +1,86 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "softgrain/experiment/create.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+double value_of(const std::vector<Quantity>& row, std::string_view name) {
+  const auto found = std::ranges::find(row, name, &Quantity::name);
+  REQUIRE(found != row.end());
+  return found->value;
+}
+
+/// Few legs, most of them shorter than a step, so that a rounding to whole steps would be seen at once.
+Case case_of(const char* loading, const char* model) {
+  Case c;
+  c.experiment = {.loading = loading, .model = model};
+  c.bpm.primaries = 30;
+  c.bpm.library = 1;
+  c.mpm.cells = 4;
+  c.sample.grains = 2;
+  c.sample.packing_fraction = 0.3;
+  c.loading = {.wall_velocity = 1, .max_strain = 0.011, .unload_at = {0.003, 0.006, 0.01}, .unload_by = 2e-4};
+  c.time.step = 5e-6;
+  c.mpm.time_step = 40e-6;
+  return c;
+}
+
+/// Strain after each leg, by the plates' distance alone.
+void check_ends(const Case& c) {
+  CAPTURE(c.experiment.loading);
+  CAPTURE(c.experiment.model);
+  CAPTURE(c.mpm.integrator);
+  const auto simulation = create_simulation(c);
+  const double start = value_of(simulation->observe(), "wall_height");
+  const bool box = c.experiment.loading != "diametral";
+  const auto strain = [&] {
+    const double h = value_of(simulation->observe(), "wall_height");
+    return box ? std::log(start / h) : -std::log(1 - (start - h) / (2 * c.grain.radius));
+  };
+  std::vector<double> ends;
+  while (!simulation->finished()) {
+    simulation->step();
+    if (simulation->at_turning_point() || simulation->finished()) ends.push_back(strain());
+  }
+  std::vector<double> asked;
+  for (const double turn : c.loading.unload_at) asked.insert(asked.end(), {turn, turn - c.loading.unload_by});
+  asked.push_back(c.loading.max_strain);
+  REQUIRE(ends.size() == asked.size());
+  for (std::size_t leg = 0; leg < ends.size(); ++leg)
+    CHECK(ends[leg] == doctest::Approx(asked[leg]).epsilon(1e-9));
+}
+
+}  // namespace
+
+TEST_CASE("every leg of every model ends at its strain, be it shorter than a step") {
+  for (const char* loading : {"diametral", "compaction", "isotropic"}) {
+    check_ends(case_of(loading, "bpm"));
+    Case c = case_of(loading, "mpm");
+    check_ends(c);
+    c.mpm.integrator = "explicit";
+    c.mpm.time_step = 0;
+    c.loading.wall_velocity = 40;  // as far in a step
+    check_ends(c);
+    if (c.experiment.loading != "diametral") continue;
+    c.mpm.formulation = "updated_lagrangian";
+    check_ends(c);
+  }
+}
+
+TEST_CASE("a packing fraction that is asked for at the end is met") {
+  Case c = case_of("isotropic", "mpm");
+  c.loading.unload_at = {};
+  c.loading.max_strain = 1;
+  c.loading.max_packing_fraction = 0.313;
+  for (const char* loading : {"compaction", "isotropic"}) {
+    c.experiment.loading = loading;
+    const auto simulation = create_simulation(c);
+    while (!simulation->finished()) simulation->step();
+    CHECK(value_of(simulation->observe(), "phi_0") == doctest::Approx(0.313).epsilon(1e-9));
+  }
+}
