@@ -116,7 +116,7 @@ def characteristic_stress(run):
 
 def contact_pressure(snapshot):
     """Pressure of the contact forces on each particle: sum_c f_c / (2 pi a) [Pa]; None without contacts."""
-    if not {"pair", "force"} <= snapshot.contacts.keys():
+    if not {"pair", "force"} <= snapshot.contacts.keys() or snapshot.contacts_of_grains:
         return None
     radius = snapshot.particles["radius"]
     pair, force = snapshot.contacts["pair"], snapshot.contacts["force"]

@@ -10,7 +10,7 @@ from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 
 from .. import NotRecorded, measure
-from .scene import STRONG, WEAK, draw_cells, draw_disks, draw_forces, has_cells, pairs_of_particles
+from .scene import STRONG, WEAK, draw_cells, draw_disks, draw_forces, draw_outlines, has_cells, pairs_of_bodies
 from .style import PALE, POINT
 
 
@@ -58,14 +58,17 @@ class Forces:
 
     def __init__(self, snapshots):
         self.snapshots = snapshots
-        forces = np.concatenate([pairs_of_particles(s)[1] for s in snapshots])
+        forces = np.concatenate([pairs_of_bodies(s)[1] for s in snapshots])
         if forces.size == 0:
             raise NotRecorded("no contact forces")
         self.largest = np.percentile(forces, 99.5)
-        self.diameter = 2 * snapshots[0].particles["radius"].mean()
+        self.diameter = 2 * snapshots[0].body_radii().mean() * (0.25 if snapshots[0].contacts_of_grains else 1)
 
     def draw(self, axes, index, millimetres_per_metre):
-        draw_disks(axes, self.snapshots[index], PALE)
+        if self.snapshots[index].contacts_of_grains:
+            draw_outlines(axes, self.snapshots[index], PALE)
+        else:
+            draw_disks(axes, self.snapshots[index], PALE)
         draw_forces(axes, self.snapshots[index], self.largest, self._widest(millimetres_per_metre))
 
     def draw_key(self, grid, row):
@@ -78,7 +81,7 @@ class Forces:
                     loc="center left", borderaxespad=0, handlelength=1.5, alignment="left")
 
     def _widest(self, millimetres_per_metre):
-        """Line width [points] of the largest force: most of a particle's."""
+        """Line width [points] of the largest force: most of a particle's, or a part of an elastic grain's."""
         return 0.75 * self.diameter * millimetres_per_metre / POINT
 
 

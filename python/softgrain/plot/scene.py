@@ -19,6 +19,13 @@ def draw_disks(axes, snapshot, colours, rim="none"):
     axes.add_collection(disks)
 
 
+def draw_outlines(axes, snapshot, colours):
+    """Grains filled within their outlines; `colours` is one colour or one RGBA row per grain."""
+    grain, position = snapshot.outlines["grain"], snapshot.outlines["position"]
+    polygons = np.split(position, np.flatnonzero(np.diff(grain)) + 1)
+    axes.add_collection(PolyCollection(polygons, facecolors=colours, edgecolors=INK, linewidths=0.3))
+
+
 MOST_GRAINS_WITH_FIELDS = 60  # beyond, a triangulation takes too long and shows nothing more
 
 
@@ -59,8 +66,8 @@ def draw_forces(axes, snapshot, largest, widest):
     """Contact forces as segments between centres, as wide as they are large: `widest` points at `largest`.
 
     Forces above the snapshot's mean (the strong network) are dark, drawn over the others."""
-    pair, force = pairs_of_particles(snapshot)
-    position = snapshot.particles["position"]
+    pair, force = pairs_of_bodies(snapshot)
+    position = snapshot.bodies()
     strong = force > force.mean() if force.size else np.empty(0, bool)
     for network, colour in ((~strong, WEAK), (strong, STRONG)):
         width = widest * np.minimum(force[network] / largest, 1)
@@ -68,12 +75,12 @@ def draw_forces(axes, snapshot, largest, widest):
                                            capstyle="round"))
 
 
-def pairs_of_particles(snapshot):
-    """(pair (m, 2), force (m,)) of the contacts between two particles that push; empty if not recorded."""
+def pairs_of_bodies(snapshot):
+    """(pair (m, 2), force (m,)) of the contacts between two particles, or grains, that push; empty if not recorded."""
     if not {"pair", "force"} <= snapshot.contacts.keys():
         return np.empty((0, 2), int), np.empty(0)
     pair, force = snapshot.contacts["pair"].astype(int), snapshot.contacts["force"]
-    count = len(snapshot.particles["radius"])
+    count = len(snapshot.bodies())
     inside = (pair >= 0).all(axis=1) & (pair < count).all(axis=1) & (force > 0)
     return pair[inside], force[inside]
 
