@@ -88,6 +88,11 @@ class Run:
         """The resolved case, SI."""
         return tomllib.loads((self.path / "case.toml").read_text())
 
+    @property
+    def elastic(self) -> bool:
+        """Whether the grains are elastic (mpm), not bonded (bpm)."""
+        return self.case.get("experiment", {}).get("model") == "mpm"
+
     @cached_property
     def info(self) -> dict:
         """The provenance (run.json); empty if the run never wrote it."""

@@ -26,6 +26,12 @@ def draw_outlines(axes, snapshot, colours):
     axes.add_collection(PolyCollection(polygons, facecolors=colours, edgecolors=INK, linewidths=0.3))
 
 
+def grain_means(snapshot, values):
+    """Mean of a field of material points over each grain, weighted by their areas."""
+    grain, area = snapshot.particles["grain"], snapshot.particles["radius"] ** 2
+    return np.bincount(grain, area * values) / np.bincount(grain, area)
+
+
 MOST_GRAINS_WITH_FIELDS = 60  # beyond, a triangulation takes too long and shows nothing more
 
 
@@ -86,7 +92,11 @@ def pairs_of_bodies(snapshot):
 
 
 def extent(snapshot, margin):
-    """(x0, x1, y0, y1) [m] of the particles, with a margin all around."""
+    """(x0, x1, y0, y1) [m] of the particles, and of a box's walls, with a margin all around."""
     position, radius = snapshot.particles["position"], snapshot.particles["radius"][:, None]
-    low, high = (position - radius).min(axis=0) - margin, (position + radius).max(axis=0) + margin
+    low, high = (position - radius).min(axis=0), (position + radius).max(axis=0)
+    if len(snapshot.walls) > 2:  # plates are longer than the grain between them
+        corners = snapshot.walls.reshape(-1, 2)
+        low, high = np.minimum(low, corners.min(axis=0)), np.maximum(high, corners.max(axis=0))
+    low, high = low - margin, high + margin
     return low[0], high[0], low[1], high[1]
