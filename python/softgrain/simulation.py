@@ -87,9 +87,6 @@ def _strain(until):
 def _rate(value, time):
     """What a motion asks for, if it is a number [m/s]."""
     try:
-        rate = float(value)
-    except TypeError:
-        rate = math.nan
-    if not math.isfinite(rate):
-        raise ValueError(f"the motion asks for {value} at {time:.6g} s: it must return a rate [m/s], a number")
-    return rate
+        return float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"the motion asks for {value!r} at {time:.6g} s: it must return a rate [m/s], a number") from None
