@@ -5,10 +5,12 @@
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
+#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <limits>
 #include <new>
 #include <string>
@@ -24,8 +26,36 @@
 
 namespace softgrain {
 
+namespace fs = std::filesystem;
+
+std::string at_least_one(const std::string& word) {
+  int count = 0;
+  const char* end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data(), end, count);
+  return error == std::errc{} && stop == end && count >= 1
+             ? ""
+             : fmt::format("must be a whole number, at least 1, got {}", word);
+}
+
+namespace {
+
+/// `new` makes a directory: its name, or a file's without .toml, will do.
+std::string complete_case_path(std::string& path) {
+  std::error_code unknown;
+  if (const fs::path inside = fs::path(path) / "case.toml";
+      fs::is_directory(path, unknown) && fs::exists(inside, unknown))
+    path = inside.string();
+  else if (!fs::exists(path, unknown) && fs::exists(path + ".toml", unknown))
+    path += ".toml";
+  return "";
+}
+
+}  // namespace
+
 void add_case_arguments(CLI::App& verb, CaseArguments& arguments) {
-  verb.add_option("CASE", arguments.path, "case file, as written by `softgrain new`")->required();
+  verb.add_option("CASE", arguments.path, "case file, as written by `softgrain new`")
+      ->transform(CLI::Validator(complete_case_path, ""))
+      ->required();
   verb.add_option("--set", arguments.sets, "key=value: replaces one value of the case; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
@@ -102,7 +132,18 @@ int refuse_command_line(CLI::App& app, const CLI::ParseError& error) {
   return usage;
 }
 
+/// -o=x would make a directory named "=x".
+void refuse_equals_after_letter(int argc, char** argv) {
+  for (int k = 1; k < argc; ++k) {
+    const std::string_view word = argv[k];
+    if (word.size() < 3 || word[0] != '-' || word[1] == '-' || word[2] != '=') continue;
+    throw UsageError(fmt::format("'{}': no '=' after a single letter; write {} {}", word, word.substr(0, 2),
+                                 word.substr(3)));
+  }
+}
+
 int run_program(int argc, char** argv) {
+  refuse_equals_after_letter(argc, argv);
   CLI::App app{"Simulation of soft granular matter", "softgrain"};
   const BuildInfo build = build_info();
   app.set_version_flag("--version", fmt::format("softgrain {} ({})", build.version, build.commit));

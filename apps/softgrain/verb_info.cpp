@@ -137,6 +137,9 @@ void show_info(const std::string& path, bool as_json) {
   const RunPaths paths{path};
   require(!fs::is_directory(path) || fs::exists(paths.run_file()),
           "{} is not a run's directory: it has no run.json", path);
+  require(!path.ends_with(".toml"),
+          "{} is a case, neither a run's directory nor a snapshot; `softgrain check {}` tells about it", path,
+          path);
   print_result(fs::is_directory(path) ? info_of_run(paths, as_json) : info_of_snapshot(path, as_json));
 }
 

@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
@@ -24,7 +24,8 @@ const CaseTemplate& find_template(const std::string& name) {
     if (candidate.name == name) return candidate;
     names.push_back(candidate.name);
   }
-  throw UsageError(fmt::format("unknown template '{}'{}", name, did_you_mean(name, names)));
+  throw UsageError(fmt::format("unknown template '{}'{}\none of: {}", name, did_you_mean(name, names),
+                               fmt::join(names, ", ")));
 }
 
 void write_new_case(const NewOptions& options) {

@@ -40,7 +40,7 @@ void add_reproduce_verb(CLI::App& app) {
       ->required()
       ->type_name("DIR");
   verb->add_option("-j,--jobs", arguments->jobs, "runs at a time (default: one for each processor)")
-      ->check(CLI::PositiveNumber.description(""))
+      ->check(at_least_one)
       ->type_name("N");
   verb->footer(
       "Writes DIR/fig1.png .. fig4.png, pictures of the packings, the curves as CSV, verdicts.md and "

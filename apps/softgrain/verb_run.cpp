@@ -47,7 +47,7 @@ void add_run_options(CLI::App& verb, RunOptions& options) {
                                                     {"plain", ProgressStyle::plain},
                                                     {"none", ProgressStyle::none}};
   verb.add_option("-j,--threads", options.threads, "threads (default: OMP_NUM_THREADS, or one per core)")
-      ->check(CLI::PositiveNumber);
+      ->check(at_least_one);
   verb.add_option("--stop-after", options.stop_after,
                   "wall time, as \"90 min\": then write a snapshot and exit with code 75")
       ->type_name("TIME");

@@ -44,8 +44,7 @@ void add_sweep_options(CLI::App& verb, SweepArguments& arguments) {
   verb.add_option("-o,--output", arguments.output, "directory: DIR/runs/NAME, DIR/results.csv, DIR/sweep.png")
       ->type_name("DIR")
       ->required();
-  verb.add_option("-j,--jobs", arguments.jobs, "runs at a time (default: one per core)")
-      ->check(CLI::PositiveNumber);
+  verb.add_option("-j,--jobs", arguments.jobs, "runs at a time (default: one per core)")->check(at_least_one);
   verb.add_option("--column", arguments.columns,
                   "column of series.csv for the table and the figure; may be repeated")
       ->type_name("NAME")

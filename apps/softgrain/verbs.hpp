@@ -24,6 +24,9 @@ struct CaseArguments {
 };
 void add_case_arguments(CLI::App& verb, CaseArguments& arguments);
 
+/// A check of CLI11 for what is counted: "" for a whole number from 1 on, else what is wrong.
+std::string at_least_one(const std::string& word);
+
 /// What a user should know who runs a valid case: "note: ..."; "" for nothing.
 std::string caution_of(const Case& the_case);
 

@@ -103,9 +103,11 @@ def unloadings(strain, stress):
 
 
 def characteristic_stress(run):
-    """sigma_I = F0/<a0> [Pa] (the paper, section 3); None if the run does not say.
+    """sigma_I = F0/<a0> [Pa] (the paper, section 3); None for elastic grains, which have none, and if the run does not say.
 
     From the series; else with the mean primary diameter of the first snapshot for <a0>."""
+    if run.elastic:
+        return None
     if "sigma_I" in run.series:
         return float(run.series["sigma_I"][0])
     attraction = run.case.get("bpm", {}).get("attraction")
@@ -116,7 +118,7 @@ def characteristic_stress(run):
 
 def contact_pressure(snapshot):
     """Pressure of the contact forces on each particle: sum_c f_c / (2 pi a) [Pa]; None without contacts."""
-    if not {"pair", "force"} <= snapshot.contacts.keys():
+    if not {"pair", "force"} <= snapshot.contacts.keys() or snapshot.contacts_of_grains:
         return None
     radius = snapshot.particles["radius"]
     pair, force = snapshot.contacts["pair"], snapshot.contacts["force"]

@@ -20,14 +20,35 @@ class NotARun(ValueError):
 
 @dataclass(frozen=True)
 class Snapshot:
-    """The state at one time: what can be drawn. Arrays are indexed by particle, by contact or by wall."""
+    """The state at one time: what can be drawn. Arrays are indexed by particle, by contact or by wall.
+
+    `contacts["pair"]` counts particles, then walls; of elastic grains, whose particles are material points, grains, then walls."""
 
     step: int
     time: float  # [s]
     particles: dict  # position (n, 2) [m], radius (n,) [m], and any field by particle
-    contacts: dict = field(default_factory=dict)  # pair (m, 2), force (m,) [N/m], compression positive
+    contacts: dict = field(default_factory=dict)  # pair (m, 2), force (m,) [N/m]; elastic: total_force, normal, position (m, 2)
     walls: np.ndarray = field(default_factory=lambda: np.empty((0, 4)))  # x0 y0 x1 y1 [m]
     outlines: dict = field(default_factory=dict)  # position (v, 2) [m], grain (v,): counter-clockwise polygons
+
+    @property
+    def contacts_of_grains(self) -> bool:
+        """Whether contacts are between grains instead of between particles."""
+        return "position" in self.contacts
+
+    def bodies(self) -> np.ndarray:
+        """Where what `contacts["pair"]` counts lies, walls left out (n, 2) [m]: particles, or the centres of elastic grains."""
+        position = self.particles["position"]
+        if not self.contacts_of_grains:
+            return position
+        grain, area = self.particles["grain"], self.particles["radius"] ** 2
+        sums = [np.bincount(grain, area * x) for x in position.T]
+        return np.column_stack(sums) / np.bincount(grain, area)[:, None]
+
+    def body_radii(self) -> np.ndarray:
+        """Radii of bodies() [m]; of an elastic grain that of a disk of its present area."""
+        radius = self.particles["radius"]
+        return np.sqrt(np.bincount(self.particles["grain"], radius**2)) if self.contacts_of_grains else radius
 
     @classmethod
     def read(cls, path: str | Path) -> "Snapshot":
@@ -66,6 +87,11 @@ class Run:
     def case(self) -> dict:
         """The resolved case, SI."""
         return tomllib.loads((self.path / "case.toml").read_text())
+
+    @property
+    def elastic(self) -> bool:
+        """Whether the grains are elastic (mpm), not bonded (bpm)."""
+        return self.case.get("experiment", {}).get("model") == "mpm"
 
     @cached_property
     def info(self) -> dict:

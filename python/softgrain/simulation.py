@@ -36,19 +36,22 @@ class Simulation(CompiledSimulation):
         self._motion = motion
         if motion is not None:
             me = weakref.proxy(self)  # a motion may know its simulation, and both must be able to go
-            self.follow(math.nan if duration is None else duration, lambda time: me._motion(time))
+            self.follow(math.nan if duration is None else duration, lambda time: _rate(me._motion(time), time))
 
     def run(self, until: float = math.inf) -> None:
         """Steps until the strain has reached `until`, or the end of the path. Other threads run meanwhile; Ctrl-C raises
         KeyboardInterrupt between two steps, after which the simulation can go on."""
-        super().run(until)
+        super().run(_strain(until))
 
     def step(self, count: int = 1) -> StepReport:
         """Up to `count` steps, fewer at the end of the path; what the last one did."""
-        return super().step(count)
+        return super().step(_count("count", count, 0))
 
     def steps(self, until: float = math.inf, every: int = 1) -> Iterator["Simulation"]:
         """This simulation after each `every` steps, until the strain has reached `until`, or the end of the path."""
+        return self._steps(_strain(until), _count("every", every, 1))
+
+    def _steps(self, until, every):
         while not self.finished and self.strain < until:
             self.step(every)
             yield self
@@ -67,3 +70,23 @@ class Simulation(CompiledSimulation):
     def scene(self) -> Snapshot:
         """The state now, as a snapshot of a run has it: arrays of their own, with pressures, contacts, outlines and walls."""
         return Snapshot(step=self.steps_done, time=self.time, **self.scene_parts())
+
+
+def _count(name, value, least):
+    if not value >= least or value != int(value):
+        raise ValueError(f"{name} must be a whole number, at least {least}, got {value}")
+    return int(value)
+
+
+def _strain(until):
+    if math.isnan(until):
+        raise ValueError("until is nan: it must be a strain, or inf for the end of the path")
+    return until
+
+
+def _rate(value, time):
+    """What a motion asks for, if it is a number [m/s]."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"the motion asks for {value!r} at {time:.6g} s: it must return a rate [m/s], a number") from None

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import warnings
 from itertools import combinations
 from pathlib import Path
 
@@ -66,6 +67,15 @@ class Program(Temporary):
         self.assertEqual(code, 0)
         self.assertEqual(sorted(files), ["curve.png", "diagnostics-fast.png", "diagnostics-slow.png",
                                          "grain-fast.png", "grain-slow.png"])
+
+    def test_a_run_of_one_row_is_drawn_without_a_warning(self):
+        run = self.write(columns=(*synthetic.COLUMNS, "phi"))
+        table = run / "series.csv"
+        table.write_text("\n".join(table.read_text().splitlines()[:2]) + "\n")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            code, files, err = self.plot(run)
+        self.assertEqual((code, len(files), err), (0, 3, ""))
 
     def test_a_figure_that_the_data_do_not_allow_is_named_and_the_others_are_drawn(self):
         code, files, err = self.plot(self.write(snapshots=0))
@@ -224,6 +234,57 @@ class Pictures(Temporary):
         self.assertEqual([s.snapshot for s in stages], [0, 2, 4, 6])
         np.testing.assert_allclose([s.strain for s in stages], [0, 0.1, 0.088, 0.2], atol=1e-9)
         np.testing.assert_allclose([s.stress for s in stages], [0, 0.08e6, 0, 0.08e6], atol=1)
+
+
+class Elastic(Temporary):
+    """Elastic grains have no attraction, no plateau, and unload as they were loaded."""
+
+    def open(self, **options):
+        folder = self.write(**options)
+        (folder / "case.toml").write_text('[experiment]\nmodel = "mpm"\n[bpm]\nattraction = 100.0\n')  # the default
+        return softgrain.open(folder)
+
+    def words(self, draw, *arguments):
+        with plot.style():
+            return " ".join(text.get_text() for text in draw(*arguments).findobj(matplotlib.text.Text))
+
+    def test_the_curve_speaks_of_nothing_that_only_bonded_grains_have(self):
+        run = self.open()
+        words = self.words(plot.draw_curve, [run])
+        for word in ("sigma_I", "characteristic", "plateau", "slope", "mean over"):
+            self.assertNotIn(word, words)
+        self.assertIn("loading", words)
+        with self.assertRaisesRegex(softgrain.NotRecorded, "elastic grains have no sigma_I"):
+            plot.draw_curve([run], normalise=True)
+
+    def test_the_diagnostics_show_the_stored_energy_and_no_key_without_its_curve(self):
+        run = self.open(columns=("strain", "wall_work[J/m]", "elastic_energy[J/m]", "overlap_mean", "overlap_max"))
+        run.series["overlap_mean"][:] = 0  # not measured; a logarithmic axis has no place for it
+        words = self.words(plot.draw_diagnostics, run)
+        self.assertIn("elastic", words)
+        self.assertIn("worst", words)
+        self.assertNotIn("mean ", words.replace("mean radius", ""))
+
+    def test_grains_of_a_packing_are_drawn_as_grains_not_as_points(self):
+        from matplotlib.figure import Figure
+
+        square = np.array([(0, 0), (1, 0), (1, 1), (0, 1.0)])
+        points = np.concatenate([square * 0.5 + 0.25, square * 0.5 + (0.25, 1.25)])
+        snapshot = softgrain.Snapshot(
+            step=0, time=0.0,
+            particles={"position": points, "radius": np.full(8, 0.28), "grain": np.repeat([0, 1], 4),
+                       "pressure": np.arange(8.0), "J": np.ones(8)},
+            contacts={"pair": np.array([[0, 1], [0, 2]]), "force": np.array([3.0, 1]), "position": np.array([[0.5, 1], [0.5, 0]])},
+            outlines={"position": np.concatenate([square, square + (0, 1)]), "grain": np.repeat([0, 1], 4)})
+        self.assertEqual(Layers([snapshot]).layer.tolist(), [0, 1])
+        for way in (Forces, Layers, Pressure):
+            axes = Figure().add_subplot()
+            way([snapshot]).draw(axes, 0, 1.0)
+            self.assertEqual(len(axes.collections[0].get_paths()), 2)  # two polygons, not eight disks
+        axes = Figure().add_subplot()
+        Forces([snapshot]).draw(axes, 0, 1.0)
+        lines = np.concatenate([np.asarray(c.get_segments()).reshape(-1, 2, 2) for c in axes.collections[1:]])
+        np.testing.assert_allclose(lines, [[[0.5, 0.5], [0.5, 1.5]]])  # between the centres; that with the wall is left out
 
 
 class Cells(unittest.TestCase):

@@ -65,6 +65,17 @@ class Reading(unittest.TestCase):
         (self.folder / "series.csv").write_text("step,strain\n")
         self.assertEqual(softgrain.open(self.folder).series, {})
 
+    def test_contacts_of_elastic_grains_join_the_centres_of_grains(self):
+        run = softgrain.open(synthetic.write_run(self.folder))
+        bonded = run[-1]
+        self.assertFalse(bonded.contacts_of_grains)
+        self.assertIs(bonded.bodies(), bonded.particles["position"])
+        points = dict(position=np.array([[0, 0], [3, 0], [3, 3], [10, 10.0]]), radius=np.array([1, 2, 1, 1.0]),
+                      grain=np.array([0, 0, 0, 1]))
+        contacts = dict(pair=np.array([[0, 1]]), force=np.array([5.0]), position=np.array([[5, 5.0]]))
+        elastic = softgrain.Snapshot(step=0, time=0, particles=points, contacts=contacts)
+        np.testing.assert_allclose(elastic.bodies(), [[2.5, 0.5], [10, 10]])
+
     def test_snapshots_come_in_the_order_of_their_steps_with_all_their_fields(self):
         run = softgrain.open(synthetic.write_run(self.folder, fields=("pressure", "coordination")))
         self.assertEqual(len(run), 7)

@@ -302,3 +302,33 @@ def test_without_the_compiled_module_the_reader_works_and_a_simulation_says_what
                             capture_output=True, text=True)
     assert "softgrain.Simulation needs the compiled module softgrain._core" in result.stdout, result.stderr
     assert "(('grain.radius', '1'),)" in result.stdout
+
+
+def test_what_makes_no_sense_is_refused_with_words():
+    simulation = softgrain.Simulation(MPM)
+    for every in (0, -1, 0.5, float("nan")):
+        with pytest.raises(ValueError, match="every must be a whole number, at least 1"):
+            simulation.steps(every=every)
+    with pytest.raises(ValueError, match="count must be a whole number, at least 0"):
+        simulation.step(-1)
+    for call in (simulation.run, simulation.steps):
+        with pytest.raises(ValueError, match="until is nan"):
+            call(until=float("nan"))
+    assert simulation.steps_done == 0
+    for answer in (None, "fast", [1, 2]):
+        forgetful = softgrain.Simulation(MPM, motion=lambda time: answer, duration=1e-3)
+        with pytest.raises(ValueError, match="the motion asks for .* at .* s"):
+            forgetful.step()
+
+
+def test_contacts_of_elastic_grains_are_pairs_of_grains():
+    simulation = softgrain.Simulation(MPM_BOX | {"loading": {"wall_velocity": "5 m/s", "max_strain": 0.4}})
+    simulation.run()
+    scene = simulation.scene()
+    pair = scene.contacts["pair"]
+    inner = pair[:, 1] < len(scene.bodies())
+    assert len(scene.bodies()) == 9 and pair.max() < 9 + 4
+    assert 2 * inner.sum() / 9 == pytest.approx(simulation.observe()["z"]) and inner.any()
+    ends = scene.bodies()[pair[inner]]
+    along = (ends[:, 1] - ends[:, 0]) / np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)[:, None]
+    assert ((along * scene.contacts["normal"][inner]).sum(axis=1) > 0.8).all()

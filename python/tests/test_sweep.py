@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from softgrain.sweep import PlanError, __main__, read_plan
+from softgrain.sweep import PlanError, __main__, read_plan, scripts
 from softgrain.sweep.figure import mean_curve
 
 PROGRAM = Path(__file__).resolve().parents[1] / "softgrain"
@@ -71,6 +71,16 @@ class Plans(unittest.TestCase):
         self.assertEqual(plan.varied["time.step"], ["0.05 us", "1e-7"])
         self.assertEqual(plan.varied["loading.unload_at"], ["[0.1,0.2]", "[]"])
         self.assertEqual(plan.runs[0].name, "step_0.05us-unload_at__0.1_0.2_")
+
+    def test_a_name_that_is_too_long_for_a_directory_ends_in_a_hash(self):
+        lists = ["[" + ", ".join(f"{0.001 * k + 0.0001 * last:.4f}" for k in range(60)) + "]" for last in (1, 2)]
+        plan = self.plan(f"loading.unload_at={lists[0]},{lists[1]}")
+        names = [run.name for run in plan.runs]
+        self.assertEqual(len(set(names)), 2)
+        for name in names:
+            self.assertLessEqual(len(name), 200)  # of the 255 that file systems take
+            self.assertTrue(name.startswith("unload_at_"))
+        self.assertEqual(names, [run.name for run in self.plan(f"loading.unload_at={lists[0]},{lists[1]}").runs])
 
     def test_keys_of_one_ending_are_named_in_full(self):
         self.assertEqual(self.plan("solver.tolerance=1", "mpm.tolerance=2").runs[0].name,
@@ -231,6 +241,12 @@ class Scripts(Temporary):
         again = self.submit(5)
         self.assertEqual(again.returncode, 75)
         self.assertIn("scontrol requeue 41", again.stdout)
+
+    def test_paths_with_blanks_and_percent_signs_are_quoted_for_slurm(self):
+        plan = read_plan("softgrain", "case.toml", [], ["sample.seed=1,2"], Path(self.out) / "50 % of it")
+        text = scripts.slurm_script(plan, ["softgrain"], "array.sh")
+        self.assertIn('#SBATCH --job-name="50 % of it"\n', text)
+        self.assertIn(f'#SBATCH --output="{plan.folder.resolve().parent}/50 %% of it/slurm-%a.txt"\n', text)
 
     def test_the_snakefile_is_python_but_for_its_rules_and_names_every_run(self):
         self.assertEqual(self.sweep("--snakemake")[0], 0)

@@ -72,6 +72,43 @@ TEST_CASE("a wrong command line ends with exit code 2, the nearest word, and an 
   CHECK(std::filesystem::is_empty(directory.path()));
 }
 
+TEST_CASE("a wrong value on the command line is answered in a line that helps") {
+  const softgrain::test::TemporaryDirectory folder;
+  const std::string here = folder.path().string();
+  folder.file("case.toml", "");
+  const struct {
+    std::vector<std::string> arguments;
+    std::string message;
+  } mistakes[] = {
+      {{"run", "case.toml", "-j", "0"}, "must be a whole number, at least 1, got 0\n"},
+      {{"run", "case.toml", "-j", "abc"}, "must be a whole number, at least 1, got abc\n"},
+      {{"sweep", "case.toml", "--vary", "sample.seed=1", "-o", "x", "-j", "0"}, "at least 1, got 0\n"},
+      {{"run", "case.toml", "-o=x"}, "'-o=x': no '=' after a single letter; write -o x\n"},
+      {{"new", "x", "--template", "isotropic"}, "\none of: diametral-bpm, "},
+      {{"check", "case.toml", "--set", "sample.seed=1.0"}, "takes a whole number, as in 1; got 1.0\n"},
+      {{"check", "case.toml", "--set", "contact.friction=0,5"}, "decimal comma"},
+      {{"info", "case.toml"}, "case.toml is a case, neither"},
+  };
+  for (const auto& mistake : mistakes) {
+    CAPTURE(mistake.message);
+    const auto result = softgrain_program(mistake.arguments, here);
+    CHECK(result.exit_code == 2);
+    CHECK_MESSAGE(mentions(result.err, mistake.message), result.err);
+    CHECK(result.err.size() < 400);
+  }
+  CHECK_FALSE(fs::exists(folder.path() / "=x"));
+}
+
+TEST_CASE("the directory that new made is a case, and so is a file's name without .toml") {
+  const softgrain::test::TemporaryDirectory folder;
+  const std::string here = folder.path().string();
+  CHECK(softgrain_program({"new", "squeeze"}, here).exit_code == 0);
+  CHECK(softgrain_program({"check", "squeeze"}, here).exit_code == 0);
+  CHECK(softgrain_program({"check", "squeeze/case"}, here).exit_code == 0);
+  CHECK(softgrain_program({"run", "squeeze", "-q", "--stop-after", "1 ms"}, here).exit_code == 75);
+  CHECK(fs::exists(folder.path() / "squeeze/case_run/run.json"));
+}
+
 TEST_CASE("new writes a case that check accepts, and never overwrites one") {
   const TemporaryDirectory directory;
   const std::string here = directory.path().string();

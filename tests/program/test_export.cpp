@@ -20,15 +20,22 @@ softgrain::test::ProcessResult call(const TemporaryDirectory& folder, std::vecto
 }
 
 /// A packing of six elastic grains in "run".
-void make_run(const TemporaryDirectory& folder) {
+void make_run(const TemporaryDirectory& folder, const std::vector<std::string>& more = {}) {
   const auto path = folder.file(
       "case.toml",
       "[experiment]\nmodel = \"mpm\"\nloading = \"compaction\"\n[sample]\ngrains = 6\npacking_fraction = "
       "0.4\n"
       "[mpm]\ncells = 4\n[loading]\nmax_strain = 0.05\nwall_velocity = \"5 m/s\"\n[output]\nsnapshots = 2\n"
       "report = false\n");
-  const auto made = call(folder, {"run", path, "-o", "run", "--quiet"});
+  std::vector<std::string> words{"run", path, "-o", "run", "--quiet"};
+  words.insert(words.end(), more.begin(), more.end());
+  const auto made = call(folder, words);
   REQUIRE_MESSAGE(made.exit_code == 0, made.err);
+}
+
+std::string last_snapshot(const TemporaryDirectory& folder) {
+  const auto described = call(folder, {"info", "--json", "run"});
+  return nlohmann::json::parse(described.out).at("snapshots").back();
 }
 
 }  // namespace
@@ -47,6 +54,18 @@ TEST_CASE("a packing is exported in every format that export lists") {
   CHECK(call(folder, {"export", "run", "--to", "doc"}).exit_code == 2);
   CHECK(call(folder, {"export", "run", "--to", "csv", "--frame", "last"}).exit_code == 2);
   CHECK(call(folder, {"export", "run", "--to", "csv", "--frame", "99"}).exit_code == 2);
+}
+
+TEST_CASE("contacts of elastic grains are in their snapshots and in ParaView's files") {
+  const TemporaryDirectory folder;
+  make_run(folder, {"--set", "loading.max_strain=0.6"});
+  const auto lines = softgrain::test::run(
+      {"/bin/sh", "-c", "ls run/vtk/contacts_*.vtp | tail -1 | xargs grep -ao 'NumberOfLines=\"[0-9]*\"'"},
+      {}, folder.path().string());
+  const auto datasets = call(folder, {"info", "--json", last_snapshot(folder)}).out;
+  for (const char* name : {"pair", "force", "total_force", "normal", "position"})
+    CHECK(datasets.find("/scene/contacts/" + std::string(name)) != std::string::npos);
+  CHECK(std::stoi(lines.out.substr(lines.out.find('"') + 1)) >= 6);
 }
 
 TEST_CASE("paraview gets a script that names the files of the run") {

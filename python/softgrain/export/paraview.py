@@ -31,10 +31,15 @@ def write_scene(run, folder):
     (folder / "grains.pvd").write_text(pvd_text(grains))
     low, high = pressure_range(snapshots)
     text = _fill(SCRIPT.read_text(), FOLDER=f"Path({str(folder.resolve())!r})", PRESSURES=f"({low:.6g}, {high:.6g})",
-                 RADIUS=f"{snapshots[0].particles['radius'].mean():.6g}")
+                 RADIUS=f"{chain_width(snapshots[0]):.6g}")
     scene = folder / "scene.py"
     scene.write_text(text)
     return scene
+
+
+def chain_width(snapshot):
+    """Of the largest force [m]: as wide as a particle, or a quarter of an elastic grain."""
+    return snapshot.body_radii().mean() * (0.25 if snapshot.contacts_of_grains else 1)
 
 
 def pressure_range(snapshots):

@@ -22,7 +22,8 @@ class Curve:
     stress: np.ndarray  # in units of `scale`
     scale: float  # 1 MPa, or sigma_I [Pa]
     characteristic_stress: float | None  # sigma_I [Pa]
-    plateau: measure.Plateau | None  # of a grain between plates; the stress of a packing rises all the way
+    plateau: measure.Plateau | None  # of a bonded grain between plates; all other stresses rise all the way
+    elastic_grain: bool = False  # one grain, which unloads as it was loaded and is smooth
 
 
 def draw_curve(runs, labels=None, normalise=False):
@@ -40,7 +41,7 @@ def draw_curve(runs, labels=None, normalise=False):
         _draw_characteristic_stress(upper_axes, characteristic, normalise)
     axes.set_xlabel(r"cumulative axial strain $\varepsilon$")
     axes.set_ylabel(r"vertical stress $\sigma/\sigma_I$" if normalise else r"vertical stress $\sigma$ [MPa]")
-    axes.set_xlim(0, max(c.strain.max() for c in curves) * 1.02)
+    axes.set_xlim(0, max(c.strain.max() for c in curves) * 1.02 or 0.01)
     handles, words = axes.get_legend_handles_labels()
     upper_axes.legend(handles, words, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.2, borderpad=0,
                       ncols=3 if len(curves) == 1 else 1, columnspacing=1.2)
@@ -53,11 +54,12 @@ def _curve(run, label, normalise):
     if "strain" not in run.series:
         raise NotRecorded(f"{run.path}: series.csv has no strain")
     if normalise and sigma_i is None:
-        raise NotRecorded(f"{run.path}: sigma_I needs bpm.attraction in the case and a snapshot")
+        raise NotRecorded(f"{run.path}: elastic grains have no sigma_I" if run.elastic else
+                          f"{run.path}: sigma_I needs bpm.attraction in the case and a snapshot")
     scale = sigma_i if normalise else 1e6
     strain, packing = run.series["strain"], "phi" in run.series
-    flat = None if packing else measure.plateau(strain, stress / scale)
-    return Curve(label, strain, stress / scale, scale, sigma_i, flat)
+    flat = None if packing or run.elastic else measure.plateau(strain, stress / scale)
+    return Curve(label, strain, stress / scale, scale, sigma_i, flat, run.elastic and not packing)
 
 
 def _common_characteristic_stress(curves):
@@ -101,12 +103,16 @@ def _draw_branches(axes, curve):
             look = dict(color=BRANCH_COLOURS[branch.kind], lw=0.8)
         axes.plot(strain[branch.samples], stress[branch.samples], **look)
     eps, sigma = measure.envelope(strain, stress)
-    axes.plot(eps, measure.moving_mean(eps, sigma), color=BLUE, lw=1.3, label="loading (mean over 1 %)")
+    if curve.elastic_grain:
+        axes.plot(eps, sigma, color=BLUE, lw=1.3, label="loading", zorder=1.5)  # below the unloading, which it hides else
+    else:
+        axes.plot(eps, measure.moving_mean(eps, sigma), color=BLUE, lw=1.3, label="loading (mean over 1 %)")
     for kind, colour in BRANCH_COLOURS.items():
         if any(branch.kind == kind for branch in branches):
             axes.plot([], [], color=colour, lw=0.8, label=kind)
     _draw_plateau(axes, curve)
-    _write_slopes(axes, curve)
+    if not curve.elastic_grain:
+        _write_slopes(axes, curve)
 
 
 def _draw_plateau(axes, curve):

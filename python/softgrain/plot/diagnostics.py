@@ -18,7 +18,8 @@ class Panel(NamedTuple):
 
 PANELS = (
     Panel("energy [J/m]", False, {"wall_work": ("plates' work", INK), "dissipation": ("dissipated", ORANGE),
-                                  "attraction_energy": ("attraction (change)", BLUE)}),
+                                  "attraction_energy": ("attraction (change)", BLUE),
+                                  "elastic_energy": ("elastic", BLUE)}),
     Panel("kinetic\nenergy [J/m]", True, {"kinetic_energy": ("", VERMILLION)}),
     Panel("force on\nplate [N/m]", False, {"force_top": ("top", VERMILLION),
                                            "force_bottom": ("bottom", BLUE)}),
@@ -30,6 +31,7 @@ PANELS = (
 )
 FROM_START = {"attraction_energy"}  # energies known up to a constant
 PANEL_HEIGHT, AXIS_HEIGHT = 23, 9  # [mm]
+MOST_DECADES = 8  # of a logarithmic axis
 
 
 def draw_diagnostics(run):
@@ -46,29 +48,34 @@ def draw_diagnostics(run):
         axes.annotate(f"({letter})", (0, 1), xytext=(3, -3), xycoords="axes fraction",
                       textcoords="offset points", va="top")
     grid[-1, 0].set_xlabel(r"cumulative axial strain $\varepsilon$")
-    grid[-1, 0].set_xlim(0, series["strain"].max() * 1.02)
+    grid[-1, 0].set_xlim(0, series["strain"].max() * 1.02 or 0.01)
     figure.align_ylabels()
     return figure
 
 
 def _draw_panel(axes, series, panel):
+    shown = 0
     for column, (label, colour) in panel.lines.items():
         if column not in series:
             continue
         values = series[column] - (series[column][0] if column in FROM_START else 0)
         # A logarithmic axis has no place for 0: leave a gap there.
         values = np.where(values > 0, values, np.nan) if panel.logarithmic else values
-        axes.plot(series["strain"], values, color=colour, lw=0.5, label=label)
+        if np.isfinite(values).any():
+            axes.plot(series["strain"], values, color=colour, lw=0.5, label=label)
+            shown += bool(label)
     axes.set_ylabel(panel.label)
     if panel.logarithmic:
         axes.set_yscale("log")
         axes.yaxis.set_major_locator(LogLocator(numticks=5))
+        low, high = axes.get_ylim()
+        axes.set_ylim(bottom=max(low, high / 10**MOST_DECADES))  # below, rounding errors
     else:
         axes.yaxis.set_major_locator(MaxNLocator(4))
         axes.set_ylim(bottom=min(0, axes.get_ylim()[0]))
     _leave_headroom(axes, share=0.3)
-    if any(label for label, _ in panel.lines.values()):
-        axes.legend(loc="upper right", ncols=len(panel.lines), columnspacing=1, borderaxespad=0.2)
+    if shown:
+        axes.legend(loc="upper right", ncols=shown, columnspacing=1, borderaxespad=0.2)
 
 
 def _leave_headroom(axes, share):

@@ -10,7 +10,7 @@ from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 
 from .. import NotRecorded, measure
-from .scene import STRONG, WEAK, draw_cells, draw_disks, draw_forces, has_cells, pairs_of_particles
+from .scene import STRONG, WEAK, draw_cells, draw_disks, draw_forces, draw_outlines, grain_means, has_cells, pairs_of_bodies
 from .style import PALE, POINT
 
 
@@ -23,7 +23,7 @@ class Pressure:
         self.snapshots = snapshots
         self.rim = "none"
         self.name = "pressure" if "pressure" in snapshots[0].particles else "contact pressure"
-        self.values = [_pressure(s) / 1e6 if _has_forces(s) else None for s in snapshots]
+        self.values = [self._values(s) if _has_forces(s) else None for s in snapshots]
         known = [values for values in self.values if values is not None]
         if not known:
             raise NotRecorded("no pressure")
@@ -36,12 +36,20 @@ class Pressure:
             self.scale, self.extend = ScalarMappable(Normalize(0, high), colormaps["cividis"]), "max"
 
     def draw(self, axes, index, _millimetres_per_metre):
-        values = self.values[index]
-        if values is not None and has_cells(self.snapshots[index]):
-            draw_cells(axes, self.snapshots[index], values, self.scale)
-            return
+        snapshot, values = self.snapshots[index], self.values[index]
         colours = PALE if values is None else self.scale.to_rgba(values)
-        draw_disks(axes, self.snapshots[index], colours, rim=self.rim)
+        if values is not None and has_cells(snapshot):
+            draw_cells(axes, snapshot, values, self.scale)
+        elif snapshot.contacts_of_grains:
+            draw_outlines(axes, snapshot, colours)
+        else:
+            draw_disks(axes, snapshot, colours, rim=self.rim)
+
+    @staticmethod
+    def _values(snapshot):
+        """[MPa]; of many elastic grains the mean of each, for their points are too small to be seen."""
+        values = _pressure(snapshot) / 1e6
+        return grain_means(snapshot, values) if snapshot.contacts_of_grains and not has_cells(snapshot) else values
 
     def draw_key(self, grid, row):
         axes = grid.add_key_axes(row, width=2, height=0.75)
@@ -58,14 +66,17 @@ class Forces:
 
     def __init__(self, snapshots):
         self.snapshots = snapshots
-        forces = np.concatenate([pairs_of_particles(s)[1] for s in snapshots])
+        forces = np.concatenate([pairs_of_bodies(s)[1] for s in snapshots])
         if forces.size == 0:
             raise NotRecorded("no contact forces")
         self.largest = np.percentile(forces, 99.5)
-        self.diameter = 2 * snapshots[0].particles["radius"].mean()
+        self.diameter = 2 * snapshots[0].body_radii().mean() * (0.25 if snapshots[0].contacts_of_grains else 1)
 
     def draw(self, axes, index, millimetres_per_metre):
-        draw_disks(axes, self.snapshots[index], PALE)
+        if self.snapshots[index].contacts_of_grains:
+            draw_outlines(axes, self.snapshots[index], PALE)
+        else:
+            draw_disks(axes, self.snapshots[index], PALE)
         draw_forces(axes, self.snapshots[index], self.largest, self._widest(millimetres_per_metre))
 
     def draw_key(self, grid, row):
@@ -78,12 +89,12 @@ class Forces:
                     loc="center left", borderaxespad=0, handlelength=1.5, alignment="left")
 
     def _widest(self, millimetres_per_metre):
-        """Line width [points] of the largest force: most of a particle's."""
+        """Line width [points] of the largest force: most of a particle's, or a part of an elastic grain's."""
         return 0.75 * self.diameter * millimetres_per_metre / POINT
 
 
 class Layers:
-    """Particles coloured by the horizontal layer in which they started: how the material has flowed."""
+    """Particles, or the elastic grains of a packing, coloured by the layer in which they started: how they have flowed."""
 
     name = "initial layers"
     count = 12
@@ -91,14 +102,20 @@ class Layers:
 
     def __init__(self, snapshots):
         self.snapshots = snapshots
-        height = snapshots[0].particles["position"][:, 1]
-        if any(len(s.particles["position"]) != height.size for s in snapshots):
+        first = snapshots[0]
+        self.of_grains = first.contacts_of_grains and len(first.body_radii()) > 1
+        height = (first.bodies() if self.of_grains else first.particles["position"])[:, 1]
+        if any(len(s.particles["position"]) != len(first.particles["position"]) for s in snapshots):
             raise NotRecorded("the number of particles changes")
+        count = self.count
+        if self.of_grains:  # layers as thick as a grain
+            count = min(count, 1 + round(np.ptp(height) / (2 * first.body_radii().mean())))
         share = (height - height.min()) / np.ptp(height)
-        self.layer = np.minimum((share * self.count).astype(int), self.count - 1)
+        self.layer = np.minimum((share * count).astype(int), count - 1)
 
     def draw(self, axes, index, _millimetres_per_metre):
-        draw_disks(axes, self.snapshots[index], self.colours[self.layer % 2])
+        draw = draw_outlines if self.of_grains else draw_disks
+        draw(axes, self.snapshots[index], self.colours[self.layer % 2])
 
     def draw_key(self, grid, row):
         """A scale bar: the layers need no words."""

@@ -19,6 +19,19 @@ def draw_disks(axes, snapshot, colours, rim="none"):
     axes.add_collection(disks)
 
 
+def draw_outlines(axes, snapshot, colours):
+    """Grains filled within their outlines; `colours` is one colour or one RGBA row per grain."""
+    grain, position = snapshot.outlines["grain"], snapshot.outlines["position"]
+    polygons = np.split(position, np.flatnonzero(np.diff(grain)) + 1)
+    axes.add_collection(PolyCollection(polygons, facecolors=colours, edgecolors=INK, linewidths=0.3))
+
+
+def grain_means(snapshot, values):
+    """Mean of a field of material points over each grain, weighted by their areas."""
+    grain, area = snapshot.particles["grain"], snapshot.particles["radius"] ** 2
+    return np.bincount(grain, area * values) / np.bincount(grain, area)
+
+
 MOST_GRAINS_WITH_FIELDS = 60  # beyond, a triangulation takes too long and shows nothing more
 
 
@@ -59,8 +72,8 @@ def draw_forces(axes, snapshot, largest, widest):
     """Contact forces as segments between centres, as wide as they are large: `widest` points at `largest`.
 
     Forces above the snapshot's mean (the strong network) are dark, drawn over the others."""
-    pair, force = pairs_of_particles(snapshot)
-    position = snapshot.particles["position"]
+    pair, force = pairs_of_bodies(snapshot)
+    position = snapshot.bodies()
     strong = force > force.mean() if force.size else np.empty(0, bool)
     for network, colour in ((~strong, WEAK), (strong, STRONG)):
         width = widest * np.minimum(force[network] / largest, 1)
@@ -68,18 +81,22 @@ def draw_forces(axes, snapshot, largest, widest):
                                            capstyle="round"))
 
 
-def pairs_of_particles(snapshot):
-    """(pair (m, 2), force (m,)) of the contacts between two particles that push; empty if not recorded."""
+def pairs_of_bodies(snapshot):
+    """(pair (m, 2), force (m,)) of the contacts between two particles, or grains, that push; empty if not recorded."""
     if not {"pair", "force"} <= snapshot.contacts.keys():
         return np.empty((0, 2), int), np.empty(0)
     pair, force = snapshot.contacts["pair"].astype(int), snapshot.contacts["force"]
-    count = len(snapshot.particles["radius"])
+    count = len(snapshot.bodies())
     inside = (pair >= 0).all(axis=1) & (pair < count).all(axis=1) & (force > 0)
     return pair[inside], force[inside]
 
 
 def extent(snapshot, margin):
-    """(x0, x1, y0, y1) [m] of the particles, with a margin all around."""
+    """(x0, x1, y0, y1) [m] of the particles, and of a box's walls, with a margin all around."""
     position, radius = snapshot.particles["position"], snapshot.particles["radius"][:, None]
-    low, high = (position - radius).min(axis=0) - margin, (position + radius).max(axis=0) + margin
+    low, high = (position - radius).min(axis=0), (position + radius).max(axis=0)
+    if len(snapshot.walls) > 2:  # plates are longer than the grain between them
+        corners = snapshot.walls.reshape(-1, 2)
+        low, high = np.minimum(low, corners.min(axis=0)), np.maximum(high, corners.max(axis=0))
+    low, high = low - margin, high + margin
     return low[0], high[0], low[1], high[1]

@@ -1,11 +1,13 @@
 """Which runs a sweep consists of: every combination of the varied values, by name."""
 
+import hashlib
 import itertools
 import re
 from dataclasses import dataclass
 from pathlib import Path
 
 LONGEST_RANGE = 100_000
+LONGEST_NAME = 200  # of a run's directory [bytes]
 SEED = "sample.seed"
 
 
@@ -50,7 +52,7 @@ class Plan:
         return self.command("run", run, "-o", str(self.directory(run)), "--resume", *options)
 
     def _run(self, values):
-        return PlannedRun("-".join(f"{self._label(key)}_{_plain(value)}" for key, value in values.items()), values)
+        return PlannedRun(_short("-".join(f"{self._label(key)}_{_plain(value)}" for key, value in values.items())), values)
 
     def _label(self, key):
         """"friction" of "contact.friction", unless another varied key ends so."""
@@ -92,6 +94,13 @@ def _values(key, text):
     if "" in values:
         raise PlanError(f"--vary {key}: an empty value")
     return values
+
+
+def _short(name):
+    """The name of a directory: file systems take 255 bytes, and files get names that are longer than their run's."""
+    if len(name.encode()) <= LONGEST_NAME:
+        return name
+    return f"{name.encode()[:LONGEST_NAME - 50].decode(errors='ignore')}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
 
 
 def _plain(value):

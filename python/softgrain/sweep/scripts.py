@@ -1,5 +1,6 @@
 """Files that hand a sweep to others: a Slurm array and a Snakefile. Each task is `softgrain sweep --index I`."""
 
+import re
 import shlex
 
 SLURM = """\
@@ -9,7 +10,7 @@ SLURM = """\
 #SBATCH --array=0-{last}
 #SBATCH --cpus-per-task=1
 #SBATCH --time=24:00:00
-#SBATCH --output={folder}/slurm-%a.txt
+#SBATCH --output={output}
 # Two minutes before the time is over the run writes a snapshot and asks with exit code 75 to come again.
 #SBATCH --signal=USR2@120
 #SBATCH --requeue
@@ -56,8 +57,14 @@ def slurm_script(plan, words, script):
     """The text of the array's script; `words` are those of this sweep, absolute."""
     folder = plan.folder.resolve()
     count = len(plan.runs)
-    return SLURM.format(count=count, last=count - 1, job=folder.name, folder=folder, script=shlex.quote(str(script)),
+    output = str(folder).replace("%", "%%") + "/slurm-%a.txt"  # % begins what Slurm replaces
+    return SLURM.format(count=count, last=count - 1, job=_quoted(folder.name), output=_quoted(output), script=shlex.quote(str(script)),
                         command=shlex.join(words))
+
+
+def _quoted(text):
+    """For a line of #SBATCH, which Slurm parts at blanks as a shell would."""
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"' if re.search(r"[^\w@%+=:,./-]", text) else text
 
 
 def snakefile(plan, words, script):

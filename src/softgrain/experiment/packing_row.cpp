@@ -17,6 +17,7 @@ std::vector<Quantity> packing_row(const PackingView& packing) {
   const Coordination neighbours = coordination(network);
   const Mat<2> motion = kinetic_stress(packing.mass, packing.velocity, area);
   const Mat<2> sigma = contact_stress(packing.contacts, packing.centre, area) + motion;
+  const bool touching = !network.pairs.empty() || !network.walls.empty();
   std::vector<double> perimeter;
   double circularity = 0, aspect_ratio = 0, diameter = 0;
   for (int g = 0; g < grains; ++g) {
@@ -35,13 +36,16 @@ std::vector<Quantity> packing_row(const PackingView& packing) {
       {"z", "", neighbours.z},
       {"z_no_rattlers", "", neighbours.z_no_rattlers},
       {"rattlers", "", neighbours.rattlers},
+      {"z_with_walls", "", neighbours.z_with_walls},
+      {"z_backbone", "", neighbours.z_backbone},
+      {"backbone", "", neighbours.backbone},
       {"sides", "", mean_sides(network, perimeter)},
       {"stress_xx", "Pa", sigma(0, 0)},
       {"stress_yy", "Pa", sigma(1, 1)},
       {"stress_xy", "Pa", (sigma(0, 1) + sigma(1, 0)) / 2},
       {"stress_kinetic", "Pa", trace(motion) / 2},
       {"inertial_number", "",
-       inertial_number(packing.strain_rate, diameter, packing.density, trace(sigma) / 2)},
+       inertial_number(packing.strain_rate, diameter, packing.density, touching ? trace(sigma) / 2 : 0)},
       {"anisotropy", "", fabric(network.pairs).anisotropy},
       {"force_mean", "N/m", force_distribution(network.pairs).mean},
       {"circularity", "", circularity},

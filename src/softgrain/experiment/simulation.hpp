@@ -31,10 +31,13 @@ struct Checkpoint {
 };
 
 /// What can be drawn: disks (primaries, or material points), outlines of soft grains, walls as segments, and
-/// contacts as segments with their force.
+/// contacts with their force.
 struct Scene {
   std::map<std::string, Array> particles;  ///< position (n, 2), radius, then any field by primary particle
-  std::map<std::string, Array> contacts;   ///< pair (m, 2) of particles, walls from n on, force (m, 1) [N/m]
+  /// pair (m, 2) of particles, walls from n on, in the order of wall_segments; force (m, 1) [N/m], normal.
+  /// With a position (m, 2) [m] of their own the pairs are of grains, not of particles; walls from their
+  /// number on.
+  std::map<std::string, Array> contacts;
   std::map<std::string, Array>
       outlines;  ///< position (v, 2) of the outlines' vertices, grain (v): a new grain, a new polygon
   std::vector<double> wall_segments;  ///< x0 y0 x1 y1 for each wall [m]

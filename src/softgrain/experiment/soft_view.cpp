@@ -72,6 +72,26 @@ std::vector<Quantity> soft_packing_row(const SoftView& view, double strain_rate)
                       .strain_rate = strain_rate});
 }
 
+std::map<std::string, Array> grain_contacts(std::span<const ContactPoint> points, int grains) {
+  const ContactNetwork network = contact_network(points, grains);
+  std::vector<std::int64_t> pair;
+  std::vector<double> force;
+  std::vector<Vec<2>> total_force, normal, position;
+  for (const auto* list : {&network.pairs, &network.walls})
+    for (const GrainPair& p : *list) {
+      pair.insert(pair.end(), {p.a, p.b >= 0 ? p.b : grains + wall_index(p.b)});  // its own inverse
+      force.push_back(p.normal_force);
+      total_force.push_back(p.force);
+      normal.push_back(p.normal);
+      position.push_back(p.position);
+    }
+  return {{"pair", {2, std::move(pair)}},
+          {"force", {1, std::move(force)}},
+          {"total_force", to_array<2>(total_force)},
+          {"normal", to_array<2>(normal)},
+          {"position", to_array<2>(position)}};
+}
+
 Scene soft_scene(const SoftView& view) {
   const SoftGrains& grains = view.grains;
   std::vector<Vec<2>> position;
@@ -107,18 +127,20 @@ Scene soft_scene(const SoftView& view) {
   scene.outlines["position"] = to_array<2>(outline);
   scene.outlines["force"] = to_array<2>(forces);
   scene.outlines["grain"] = {1, std::move(grain_of_vertex)};
+  scene.contacts = grain_contacts(contact_points(view), grains.size());
   const auto& walls = view.walls;
   const double low = walls[bottom_wall].point[1], high = walls[top_wall].point[1];
   double begin = std::numeric_limits<double>::infinity(), end = -begin;
   for (const Vec<2>& x : outline) begin = std::min(begin, x[0]), end = std::max(end, x[0]);
   if (walls.size() > 2) {
     begin = walls[left_wall].point[0], end = walls[right_wall].point[0];
-    scene.wall_segments = {begin, low, begin, high, end, low, end, high};
   } else {
     const double margin = 0.1 * (end - begin);
     begin -= margin, end += margin;
   }
-  scene.wall_segments.insert(scene.wall_segments.end(), {begin, low, end, low, begin, high, end, high});
+  scene.wall_segments = {begin, low, end, low, begin, high, end, high};  // in the order of BoxWall
+  if (walls.size() > 2)
+    scene.wall_segments.insert(scene.wall_segments.end(), {begin, low, begin, high, end, low, end, high});
   return scene;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "softgrain/experiment/simulation.hpp"
@@ -28,8 +30,13 @@ std::vector<ContactPoint> contact_points(const SoftView& view);
 /// What a box of soft grains shows (packing_row), at a strain rate [1/s].
 std::vector<Quantity> soft_packing_row(const SoftView& view, double strain_rate);
 
+/// Contacts of a scene from their points: `pair` of grains, walls from `grains` on, `force` f_n [N/m], the
+/// `total_force` of the first on the second [N/m], `normal` from the first to the second, `position` [m].
+/// Pairs of grains first.
+std::map<std::string, Array> grain_contacts(std::span<const ContactPoint> points, int grains);
+
 /// Material points as disks of their present area, the outlines with the contact forces on their vertices,
-/// and the walls.
+/// the contacts of grains and the walls.
 Scene soft_scene(const SoftView& view);
 
 /// The nodes of each grain in its lane.

@@ -9,6 +9,7 @@
 #include "softgrain/experiment/arrays.hpp"
 #include "softgrain/experiment/diametral_path.hpp"
 #include "softgrain/experiment/given_path.hpp"
+#include "softgrain/experiment/soft_view.hpp"
 #include "softgrain/geometry/polygon.hpp"
 #include "softgrain/math/tensor.hpp"
 
@@ -141,11 +142,19 @@ Scene UpdatedLagrangianSimulation::scene() const {
     pressure.push_back(-trace(stress.back()) / 2);
   }
   std::vector<Vec<2>> force(grain().outline.size());  // zero for contact on nodes
+  std::vector<ContactPoint> points;
   for (std::size_t c = 0; c < dynamics_.contacts.size(); ++c) {
     const LatticeContact& contact = dynamics_.contacts[c];
     const Vec<2>& n = contact.normal;
     const Vec<2>& p = dynamics_.impulse[c];
-    if (contact.vertex >= 0) force[contact.vertex] += 1 / dt_ * (p[0] * n + p[1] * perpendicular(n));
+    if (contact.vertex < 0) continue;
+    const Vec<2> F = 1 / dt_ * (p[0] * n + p[1] * perpendicular(n));
+    force[contact.vertex] += F;
+    points.push_back({.a = 0,
+                      .b = wall_index(contact.wall),
+                      .force = -F,
+                      .normal = -n,
+                      .position = grain().outline[contact.vertex]});
   }
   Scene scene;
   scene.particles["position"] = to_array<2>(grain().position);
@@ -157,6 +166,7 @@ Scene UpdatedLagrangianSimulation::scene() const {
   scene.outlines["position"] = to_array<2>(grain().outline);
   scene.outlines["force"] = to_array<2>(force);
   scene.outlines["grain"] = {1, std::vector<std::int64_t>(grain().outline.size(), 0)};
+  scene.contacts = grain_contacts(points, 1);
   const auto [left, right] = extent(grain());
   const double margin = 0.1 * (right - left);
   for (const BoxWall w : {bottom_wall, top_wall}) {

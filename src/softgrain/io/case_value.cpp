@@ -26,6 +26,9 @@ std::string shown(const TomlValue& value) {
       return "a list";
     else if constexpr (std::is_same_v<T, TomlValue::Table>)
       return "a table";
+    else if constexpr (std::is_same_v<T, double>)
+      return std::floor(content) == content && std::fabs(content) < 1e15 ? fmt::format("{:.1f}", content)
+                                                                         : fmt::format("{}", content);
     else
       return fmt::format("{}", content);
   };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -40,6 +41,9 @@ struct Prefix {
   std::string_view name;
   int exponent;
 };
+
+// no-break, narrow no-break and thin space: what word processors and typists put between number and unit
+constexpr std::array<std::string_view, 4> blanks{" ", "\u00a0", "\u202f", "\u2009"};
 
 constexpr std::string_view micro_sign = "\u00b5", greek_mu = "\u03bc";
 constexpr std::array prefixes{Prefix{"n", -9}, Prefix{"u", -6}, Prefix{micro_sign, -6}, Prefix{greek_mu, -6},
@@ -153,7 +157,28 @@ class UnitParser {
         if (unit.takes_prefix && name.starts_with(prefix.name) &&
             name.substr(prefix.name.size()) == unit.name)
           return {unit.unit.dimension, unit.unit.exponent + prefix.exponent, unit.unit.factor};
-    throw UsageError(fmt::format("unknown unit '{}'", name));
+    throw UsageError(fmt::format("unknown unit '{}'; {}", name, advice(name)));
+  }
+
+  /// The unit that differs in capitals alone, or all there are.
+  static std::string advice(std::string_view name) {
+    const auto same = [&](const std::string& candidate) {
+      return std::equal(name.begin(), name.end(), candidate.begin(), candidate.end(), [](char a, char b) {
+        return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+      });
+    };
+    std::string with_prefix, without;
+    for (const NamedUnit& unit : named_units) {
+      std::string& list = unit.takes_prefix ? with_prefix : without;
+      list += fmt::format("{}{}", list.empty() ? "" : ", ", unit.name);
+      if (same(std::string(unit.name))) return fmt::format("did you mean '{}'?", unit.name);
+    }
+    for (const Prefix& prefix : prefixes)
+      for (const NamedUnit& unit : named_units)
+        if (const auto candidate = fmt::format("{}{}", prefix.name, unit.name);
+            unit.takes_prefix && name.front() == prefix.name.front() && same(candidate))
+          return fmt::format("did you mean '{}'?", candidate);
+    return fmt::format("units are {} (and with prefixes, as in mm or kPa), {}", with_prefix, without);
   }
 
   bool skip(std::size_t n) {
@@ -162,7 +187,7 @@ class UnitParser {
   }
   bool take(std::string_view token) { return rest_.starts_with(token) && skip(token.size()); }
   void skip_spaces() {
-    while (take(" ")) {
+    while (std::any_of(blanks.begin(), blanks.end(), [&](std::string_view blank) { return take(blank); })) {
     }
   }
 
@@ -177,8 +202,13 @@ std::size_t count_digits(std::string_view text) {
 }
 
 std::string_view trimmed(std::string_view text) {
-  while (text.starts_with(' ')) text.remove_prefix(1);
-  while (text.ends_with(' ')) text.remove_suffix(1);
+  for (bool found = true; found;) {
+    found = false;
+    for (const std::string_view blank : blanks) {
+      if (text.starts_with(blank)) text.remove_prefix(blank.size()), found = true;
+      if (text.ends_with(blank)) text.remove_suffix(blank.size()), found = true;
+    }
+  }
   return text;
 }
 
@@ -201,6 +231,10 @@ QuantityText take_apart(std::string_view text) {
     digits += decimals;
   }
   require(digits > 0, "'{}' is not a number with a unit", all);
+  if (text.substr(n).starts_with(','))
+    if (const std::size_t decimals = count_digits(text.substr(n + 1)); decimals > 0)
+      throw UsageError(fmt::format("'{}' has a decimal comma; decimals stand behind a point, as in {}.{}",
+                                   all, text.substr(0, n), text.substr(n + 1, decimals)));
   QuantityText result;
   result.mantissa = text.substr(0, n);
   text.remove_prefix(n);

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <cstring>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/io/compress.hpp"
 #include "softgrain/io/file.hpp"
@@ -106,6 +108,29 @@ std::vector<double> positions_of(const Scene& scene) {
                                      : std::get<std::vector<double>>(at->second.values);
 }
 
+/// Where lines between bodies end: the particles themselves, or each grain's centre: the mean of its material
+/// points, weighted by their areas.
+std::vector<double> body_positions(const Scene& scene) {
+  std::vector<double> x = positions_of(scene);
+  if (!scene.contacts.contains("position")) return x;
+  const auto& grain = std::get<std::vector<std::int64_t>>(scene.particles.at("grain").values);
+  const auto& radius = std::get<std::vector<double>>(scene.particles.at("radius").values);
+  if (grain.empty()) return {};
+  const auto [least, most] = std::minmax_element(grain.begin(), grain.end());
+  if (2 * grain.size() != x.size() || radius.size() != grain.size() || *least < 0 ||
+      *most >= static_cast<std::int64_t>(grain.size()))
+    throw IoError("the scene's particles belong to no grains");
+  const std::int64_t grains = *most + 1;
+  std::vector<double> centre(2 * grains, 0), weight(grains, 0);
+  for (std::size_t i = 0; i < grain.size(); ++i) {
+    const double area = radius[i] * radius[i];
+    weight[grain[i]] += area;
+    for (std::size_t d = 0; d < 2; ++d) centre[2 * grain[i] + d] += area * x[2 * i + d];
+  }
+  for (std::size_t k = 0; k < centre.size(); ++k) centre[k] /= weight[k / 2];
+  return centre;
+}
+
 }  // namespace
 
 PolyData particles_of(const Scene& scene) {
@@ -119,25 +144,34 @@ PolyData particles_of(const Scene& scene) {
 PolyData contacts_of(const Scene& scene) {
   PolyData data;
   data.has_lines = true;
-  const auto pair = scene.contacts.find("pair");
+  const auto pair = scene.contacts.find("pair"), place = scene.contacts.find("position");
   if (pair == scene.contacts.end()) return data;
+  const auto* places =
+      place == scene.contacts.end() ? nullptr : &std::get<std::vector<double>>(place->second.values);
   const auto& ends = std::get<std::vector<std::int64_t>>(pair->second.values);
-  const std::vector<double> positions = positions_of(scene);
-  const auto points = static_cast<std::int64_t>(positions.size() / 2);
-  const auto is_particle = [&](std::int64_t end) { return end >= 0 && end < points; };
-  std::vector<std::size_t> kept;
-  for (std::size_t k = 0; 2 * k + 1 < ends.size(); ++k)
-    if (is_particle(ends[2 * k]) && is_particle(ends[2 * k + 1])) kept.push_back(k);
-  std::unordered_map<std::int64_t, std::int64_t> number;  // of the points that lines end at
-  const auto number_of = [&](std::int64_t point) {
-    const auto [found, is_new] = number.try_emplace(point, static_cast<std::int64_t>(number.size()));
-    if (is_new) data.positions.insert(data.positions.end(), {positions[2 * point], positions[2 * point + 1]});
+  const std::vector<double> positions = body_positions(scene);
+  const auto bodies = static_cast<std::int64_t>(positions.size() / 2);
+  const auto is_body = [&](std::int64_t end) { return end >= 0 && end < bodies; };
+  std::unordered_map<std::int64_t, std::int64_t> number;  // of the bodies that lines end at
+  const auto add_point = [&](const double* x) {
+    data.positions.insert(data.positions.end(), {x[0], x[1]});
+    return static_cast<std::int64_t>(data.positions.size() / 2) - 1;
+  };
+  const auto number_of = [&](std::int64_t body) {
+    const auto [found, is_new] = number.try_emplace(body, 0);
+    if (is_new) found->second = add_point(&positions[2 * body]);
     return found->second;
   };
-  for (const std::size_t k : kept)
-    for (const std::int64_t end : {ends[2 * k], ends[2 * k + 1]}) data.lines.push_back(number_of(end));
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; 2 * k + 1 < ends.size(); ++k) {
+    const std::int64_t a = ends[2 * k], b = ends[2 * k + 1];
+    if (!is_body(a) || (!is_body(b) && places == nullptr)) continue;
+    data.lines.push_back(number_of(a));
+    data.lines.push_back(is_body(b) ? number_of(b) : add_point(&(*places)[2 * k]));
+    kept.push_back(k);
+  }
   for (const auto& [name, array] : scene.contacts)
-    if (name != "pair") data.cell_data[name] = select_rows(array, kept);
+    if (name != "pair" && name != "position") data.cell_data[name] = select_rows(array, kept);
   return data;
 }
 

@@ -19,8 +19,9 @@ struct PolyData {
 };
 
 PolyData particles_of(const Scene& scene);
-/// A line between the particles of each contact. Contacts with something else than a particle (an index
-/// outside) are left out.
+/// A line between the particles of each contact; contacts with something else than a particle (an index
+/// outside) are left out. Of contacts between grains a line between the centres, and from the centre to the
+/// place of contact with a wall.
 PolyData contacts_of(const Scene& scene);
 PolyData walls_of(const Scene& scene);
 

@@ -18,7 +18,37 @@ void add(GrainPair& pair, const ContactPoint& point) {
   pair.normal_force += f_n;
   pair.force += point.force;
   pair.normal += f_n * point.normal;
+  pair.position += f_n * point.position;
   pair.length += point.length;
+}
+
+/// What is left of a network without grains of fewer than `least` contacts, one after the other.
+struct Held {
+  int grains = 0, pairs = 0;
+  double z() const { return grains > 0 ? 2.0 * pairs / grains : 0; }
+};
+
+Held held_by(int least, const ContactNetwork& network) {
+  std::vector<int> loose(network.grains, 0);
+  Held held{.grains = network.grains, .pairs = 0};
+  for (bool found = true; found;) {
+    found = false;
+    std::vector<int> contacts(network.grains, 0);
+    held.pairs = 0;
+    for (const GrainPair& pair : network.walls) ++contacts[pair.a];
+    for (const GrainPair& pair : network.pairs) {
+      if (loose[pair.a] || loose[pair.b]) continue;
+      ++contacts[pair.a], ++contacts[pair.b];
+      ++held.pairs;
+    }
+    for (int g = 0; g < network.grains; ++g) {
+      if (loose[g] || contacts[g] >= least) continue;
+      loose[g] = 1;
+      --held.grains;
+      found = true;
+    }
+  }
+  return held;
 }
 
 }  // namespace
@@ -34,11 +64,18 @@ ContactNetwork contact_network(std::span<const ContactPoint> points, int grains)
   for (const ContactPoint& point : sorted) {
     std::vector<GrainPair>& list = point.b < 0 ? network.walls : network.pairs;
     if (list.empty() || list.back().a != point.a || list.back().b != point.b)
-      list.push_back({.a = point.a, .b = point.b, .points = 0, .normal_force = 0, .force = {}, .normal = {}});
+      list.push_back({.a = point.a,
+                      .b = point.b,
+                      .points = 0,
+                      .normal_force = 0,
+                      .force = {},
+                      .normal = {},
+                      .position = {}});
     add(list.back(), point);
   }
   for (std::vector<GrainPair>* list : {&network.pairs, &network.walls})
     for (GrainPair& pair : *list) {
+      pair.position *= 1 / pair.normal_force;
       const double size = norm(pair.normal);
       if (size > 0) pair.normal *= 1 / size;
     }
@@ -46,31 +83,17 @@ ContactNetwork contact_network(std::span<const ContactPoint> points, int grains)
 }
 
 Coordination coordination(const ContactNetwork& network) {
-  Coordination result;
-  if (network.grains == 0) return result;
-  std::vector<int> rattler(network.grains, 0);
-  int held = network.grains, pairs_held = 0;
-  for (bool found = true; found;) {
-    found = false;
-    std::vector<int> contacts(network.grains, 0);
-    pairs_held = 0;
-    for (const GrainPair& pair : network.walls) ++contacts[pair.a];
-    for (const GrainPair& pair : network.pairs) {
-      if (rattler[pair.a] || rattler[pair.b]) continue;
-      ++contacts[pair.a], ++contacts[pair.b];
-      ++pairs_held;
-    }
-    for (int g = 0; g < network.grains; ++g) {
-      if (rattler[g] || contacts[g] >= 2) continue;
-      rattler[g] = 1;
-      --held;
-      found = true;
-    }
-  }
-  result.z = 2.0 * static_cast<double>(network.pairs.size()) / network.grains;
-  result.z_no_rattlers = held > 0 ? 2.0 * pairs_held / held : 0;
-  result.rattlers = 1 - static_cast<double>(held) / network.grains;
-  return result;
+  const int n = network.grains;
+  if (n == 0) return {};
+  const Held no_rattlers = held_by(2, network), backbone = held_by(3, network);
+  const auto pairs = static_cast<double>(network.pairs.size()),
+             with_walls = pairs + static_cast<double>(network.walls.size());
+  return {.z = 2 * pairs / n,
+          .z_no_rattlers = no_rattlers.z(),
+          .rattlers = 1 - static_cast<double>(no_rattlers.grains) / n,
+          .z_backbone = backbone.z(),
+          .backbone = static_cast<double>(backbone.grains) / n,
+          .z_with_walls = 2 * with_walls / n};
 }
 
 double mean_sides(const ContactNetwork& network, std::span<const double> perimeter, double least_share) {

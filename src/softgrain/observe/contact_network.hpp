@@ -26,6 +26,7 @@ struct GrainPair {
   double normal_force = 0;  ///< f_n = sum over the points of f . n [N/m], >= 0 in compression
   Vec<2> force;             ///< of a on b [N/m]
   Vec<2> normal;            ///< unit, from a to b: mean over the points, weighted by their normal force
+  Vec<2> position;          ///< mean over the points, weighted alike [m]
   double length = 0;        ///< of the contact, sum over its points [m]
 };
 
@@ -42,10 +43,15 @@ struct Coordination {
   double z = 0;              ///< Z = 2 N_pairs/N_grains (theory (54))
   double z_no_rattlers = 0;  ///< the same among the grains that are not rattlers; 0 if all are
   double rattlers = 0;       ///< share of the grains that are rattlers
+  double z_backbone = 0;     ///< Z among the grains of the backbone; 0 if there is none
+  double backbone = 0;       ///< share of the grains in it
+  double z_with_walls = 0;   ///< 2 (N_pairs + N_wall_pairs)/N_grains: 4 where frictionless disks jam in a box
 };
 
 /// Rattlers have fewer than two contacts, walls among them here, with grains that are no rattlers: they are
-/// taken out again and again until none is left. Walls hold a grain but do not count in Z.
+/// taken out again and again until none is left. Walls hold a grain but do not count in Z, but in
+/// z_with_walls. The backbone is what remains when grains with fewer than three contacts are taken out in the
+/// same way: two frictionless contacts hold a disk only where they lie opposite each other.
 Coordination coordination(const ContactNetwork& network);
 
 /// Mean number of sides of the polygons that squeezed grains become: neighbours, walls among them, along

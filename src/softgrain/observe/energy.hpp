@@ -16,9 +16,10 @@ struct EnergyBudget {
 
 /// Inertial number of a packing: I = strain_rate d sqrt(rho/p) (theory (63)), the time that a grain of
 /// diameter d [m] and density rho [kg/m^3] takes to move by d under the pressure p [Pa], over that of the
-/// strain [1/s]. Below 1e-3 loading is quasi-static. Infinite where nothing presses (p <= 0).
+/// strain [1/s]. Below 1e-3 loading is quasi-static. 0 where
+/// nothing presses (p <= 0): grains that nothing holds have no such time.
 inline double inertial_number(double strain_rate, double diameter, double density, double pressure) {
-  if (!(pressure > 0)) return HUGE_VAL;
+  if (!(pressure > 0)) return 0;
   return std::abs(strain_rate) * diameter * std::sqrt(density / pressure);
 }
 

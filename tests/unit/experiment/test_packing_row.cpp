@@ -60,6 +60,9 @@ TEST_CASE("a square packing of square grains shows what can be counted by hand")
   CHECK(row["z"] == doctest::Approx(2 * 12 / 9.0));
   CHECK(row["z_no_rattlers"] == doctest::Approx(2 * 12 / 9.0));
   CHECK(row["rattlers"] == 0);
+  CHECK(row["z_with_walls"] == doctest::Approx(2 * 24 / 9.0));
+  CHECK(row["z_backbone"] == doctest::Approx(2 * 12 / 9.0));
+  CHECK(row["backbone"] == 1);
   CHECK(row["sides"] == 4);
   CHECK(row["stress_xx"] == doctest::Approx(n * f_x / side));
   CHECK(row["stress_yy"] == doctest::Approx(n * f_y / side));

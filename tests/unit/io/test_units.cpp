@@ -75,6 +75,23 @@ TEST_CASE("a wrong dimension is refused with the expected one in words") {
   CHECK(mentions(refusal("1 kg m/s", density), "a mass density"));
 }
 
+TEST_CASE("a blank may be one that does not break, as word processors write it") {
+  for (const char* blank : {" ", "\u00a0", "\u202f", "\u2009"}) {
+    CHECK(parse_quantity(std::string("5") + blank + "mm", length) == 0.005);
+    CHECK(parse_quantity(std::string("5") + blank + "N" + blank + "m" + blank, {2, 1, -2}) == 5);
+  }
+}
+
+TEST_CASE("an unknown unit gets the one with other capitals, or the list, and a decimal comma a word") {
+  constexpr Dimension stress{-1, 1, -2};
+  CHECK(mentions(refusal("10 Mpa", stress), "unknown unit 'Mpa'; did you mean 'MPa'?"));
+  CHECK(mentions(refusal("10 mpa", stress), "did you mean 'mPa'?"));
+  CHECK(mentions(refusal("10 MM", length), "unknown unit 'MM'"));
+  CHECK(mentions(refusal("1000 psi", stress), "units are m, g, s, Hz, N, Pa, J, W, bar (and with prefixes"));
+  CHECK(mentions(refusal("0,5 mm", length),
+                 "'0,5 mm' has a decimal comma; decimals stand behind a point, as in 0.5"));
+}
+
 TEST_CASE("what is no number or no unit is refused") {
   CHECK(mentions(refusal("1 parsec", length), "unknown unit 'parsec'"));
   CHECK(mentions(refusal("1 kmin", duration), "unknown unit 'kmin'"));

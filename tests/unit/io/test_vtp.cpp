@@ -95,6 +95,20 @@ TEST_CASE("ParaView's contacts are lines between particles with their force, wit
   CHECK(vtp_array<float>(file, "force") == std::vector<float>{10, 30});
 }
 
+TEST_CASE("ParaView's contacts between grains join their centres, or a centre and the place at a wall") {
+  Scene scene;  // a grain of three points, one of them four times as large as the others, and a grain of one
+  scene.particles["position"] = {2, std::vector<double>{0, 0, 3, 0, 3, 3, 10, 10}};
+  scene.particles["radius"] = {1, std::vector<double>{1, 2, 1, 1}};
+  scene.particles["grain"] = {1, std::vector<std::int64_t>{0, 0, 0, 1}};
+  scene.contacts["pair"] = {2, std::vector<std::int64_t>{0, 1, 0, 3}};  // 2 and 3 are walls
+  scene.contacts["force"] = {1, std::vector<double>{10, 20}};
+  scene.contacts["position"] = {2, std::vector<double>{5, 5, -1, 0.5}};
+  const std::string file = encode_vtp(contacts_of(scene));
+  CHECK(vtp_array<float>(file, "position") == std::vector<float>{2.5F, 0.5F, 0, 10, 10, 0, -1, 0.5F, 0});
+  CHECK(vtp_array<std::int64_t>(file, "connectivity") == std::vector<std::int64_t>{0, 1, 0, 2});
+  CHECK(vtp_array<float>(file, "force") == std::vector<float>{10, 20});
+}
+
 TEST_CASE("ParaView's walls are one line each, and a scene without contacts is no error") {
   const std::string walls = encode_vtp(walls_of(three_disks()));
   CHECK(vtp_array<float>(walls, "position") == std::vector<float>{-1, 0, 0, 1, 0, 0, -1, 9, 0, 1, 9, 0});

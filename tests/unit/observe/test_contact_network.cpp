@@ -55,8 +55,8 @@ TEST_CASE("inside a hexagonal packing every grain has six neighbours, inside a s
 
 TEST_CASE("two grains that touch in many points are one pair with the sum of the forces and lengths") {
   const std::vector<ContactPoint> points{
-      {.a = 1, .b = 0, .force = {0, -3}, .normal = {0, -1}, .position = {}, .length = 2},
-      {.a = 0, .b = 1, .force = {4, 0}, .normal = {1, 0}, .position = {}, .length = 5},
+      {.a = 1, .b = 0, .force = {0, -3}, .normal = {0, -1}, .position = {1, 0}, .length = 2},
+      {.a = 0, .b = 1, .force = {4, 0}, .normal = {1, 0}, .position = {8, 0}, .length = 5},
       push(0, wall_index(2), 7),
       push(0, wall_index(2), 1)};
   const ContactNetwork network = contact_network(points, 2);
@@ -68,6 +68,7 @@ TEST_CASE("two grains that touch in many points are one pair with the sum of the
   CHECK(pair.normal_force == 7);
   CHECK(pair.force == Vec<2>{4, 3});
   CHECK(pair.length == 7);
+  CHECK(pair.position[0] == doctest::Approx((3 * 1 + 4 * 8) / 7.0));
   CHECK(pair.normal[0] == doctest::Approx(0.8));  // (4, 3)/5
   CHECK(pair.normal[1] == doctest::Approx(0.6));
   REQUIRE(network.walls.size() == 1);
@@ -109,6 +110,49 @@ TEST_CASE("rattlers are taken out until every grain left has two contacts, and w
   CHECK(c.z == 2 * 5 / 7.0);
   CHECK(c.rattlers == doctest::Approx(3 / 7.0));           // 4, then 3, and 5
   CHECK(c.z_no_rattlers == doctest::Approx(2 * 3 / 4.0));  // the triangle, and grain 6
+}
+
+TEST_CASE("the backbone loses grains with two contacts, and with them their neighbours") {
+  // a tetrahedron-like core 0 1 2 3, each with three contacts; 4 hangs on two of them; 5 and 6 hold each
+  // other and one wall each; 7 is free
+  const std::vector<ContactPoint> points{push(0, 1, 1),
+                                         push(0, 2, 1),
+                                         push(0, 3, 1),
+                                         push(1, 2, 1),
+                                         push(1, 3, 1),
+                                         push(2, 3, 1),
+                                         push(3, 4, 1),
+                                         push(2, 4, 1),
+                                         push(5, wall_index(0), 1),
+                                         push(6, wall_index(1), 1),
+                                         push(5, 6, 1)};
+  const Coordination c = coordination(contact_network(points, 8));
+  CHECK(c.rattlers == 1 / 8.0);
+  CHECK(c.z_no_rattlers == 2 * 9 / 7.0);
+  CHECK(c.backbone == 4 / 8.0);
+  CHECK(c.z_backbone == 2 * 6 / 4.0);
+  CHECK(c.z == 2 * 9 / 8.0);
+  CHECK(c.z_with_walls == 2 * 11 / 8.0);
+  const Coordination ring =
+      coordination(contact_network(std::vector{push(0, 1, 1), push(1, 2, 1), push(0, 2, 1)}, 3));
+  CHECK(ring.rattlers == 0);
+  CHECK(ring.backbone == 0);
+  CHECK(ring.z_backbone == 0);
+}
+
+TEST_CASE("disks in columns between floor and lid are isostatic only when the walls count") {
+  // n columns of one disk each, held by four walls: N_gg = n - 1, N_gw = 2 n + 2, so 2 (3 n + 1)/n
+  constexpr int n = 10;
+  std::vector<ContactPoint> points;
+  for (int i = 0; i < n; ++i) {
+    points.push_back(push(i, wall_index(0), 1)), points.push_back(push(i, wall_index(1), 1));
+    if (i + 1 < n) points.push_back(push(i, i + 1, 1));
+  }
+  points.push_back(push(0, wall_index(2), 1)), points.push_back(push(n - 1, wall_index(3), 1));
+  const Coordination c = coordination(contact_network(points, n));
+  CHECK(c.z == 2 * (n - 1) / 10.0);
+  CHECK(c.z_with_walls == 2 * (3 * n + 1) / 10.0);
+  CHECK(c.backbone == 1);
 }
 
 TEST_CASE("a chain of grains between two walls has no rattlers, a chain with a free end only rattlers") {

@@ -16,5 +16,5 @@ TEST_CASE("the paper's packing at 5 m/s has an inertial number of about 0.01 at 
   CHECK(I == doctest::Approx(0.012).epsilon(0.01));
   // a tenth of the pressure: sqrt(10) times
   CHECK(inertial_number(5 / 35.3e-3, 1.9e-3, 990, 0.05e6) == doctest::Approx(I * std::sqrt(10.0)));
-  CHECK(std::isinf(inertial_number(1, 1e-3, 1000, 0)));
+  CHECK(inertial_number(1, 1e-3, 1000, 0) == 0);  // a number, whatever reads the table
 }
