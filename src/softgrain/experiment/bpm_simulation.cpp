@@ -20,7 +20,10 @@ constexpr int first_step_factor = 200;
 
 Activation activation_of(const std::string& name) {
   if (name == "closed_at_mid_step") return Activation::closed_at_mid_step;
-  require(name == "anticipated", "contact.activation must be 'anticipated' or 'closed_at_mid_step', got '{}'",
+  if (name == "closed_at_end_of_step") return Activation::closed_at_end_of_step;
+  require(name == "anticipated",
+          "contact.activation must be 'anticipated', 'closed_at_mid_step' or 'closed_at_end_of_step', got "
+          "'{}'",
           name);
   return Activation::anticipated;
 }
@@ -83,7 +86,7 @@ StepReport BpmSimulation::step() {
   }
   sums_.duration += dt;
   sums_.wall_work += dynamics_.work.wall;
-  sums_.dissipation -= dynamics_.work.contact;
+  sums_.dissipation -= dynamics_.work.contact + dynamics_.work.push_out;
   sums_.between -= dynamics_.work.between;
   sums_.friction -= dynamics_.work.friction;
   judge(report);

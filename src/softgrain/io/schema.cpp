@@ -77,8 +77,9 @@ std::vector<Key> all_keys() {
           "coefficient of friction mu between grains; diametral test of a bpm grain: between its primaries"),
       KEY(contact.wall_friction, "", at_least(0), "coefficient of friction mu against walls"),
       KEY(contact.restitution, "", from_to(0, 1), "Newton's coefficient of restitution e_n"),
-      KEY(contact.activation, "", one_of({"anticipated", "closed_at_mid_step"}),
-          "when a contact is active: when it may close within the step, or when it is closed at mid-step"),
+      KEY(contact.activation, "", one_of({"anticipated", "closed_at_mid_step", "closed_at_end_of_step"}),
+          "when a contact is active: always, so that it may close within the step; or when it is closed at mid-step, or "
+          "will be at the end of the step"),
       KEY(contact.push_out, "", from_to(0, 1), "share beta of an existing overlap that is removed in a step"),
 
       KEY(solver.min_sweeps, "", at_least(1), "sweeps of the contact solver in every step"),
