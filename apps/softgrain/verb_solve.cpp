@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -20,11 +21,13 @@ namespace {
 constexpr int not_converged = 3;
 
 struct SolveOptions {
-  std::string path;
-  std::string method = "nesterov";
+  std::string path, output;
+  std::string method = "auto";
   ContactProblemOptions solver;
   bool json = false;
 };
+
+const char* name_of(ContactMethod method) { return method == ContactMethod::nlgs ? "nlgs" : "nesterov"; }
 
 struct Outcome {
   ContactProblem problem;
@@ -35,7 +38,7 @@ struct Outcome {
 
 void print_json(const SolveOptions& options, const Outcome& outcome) {
   nlohmann::ordered_json result{{"file", options.path},
-                                {"method", options.method},
+                                {"method", name_of(outcome.solution.method)},
                                 {"contacts", outcome.problem.contacts()},
                                 {"dimension", outcome.problem.dimension},
                                 {"sweeps", outcome.solution.sweeps},
@@ -56,8 +59,8 @@ void print_table(const SolveOptions& options, const Outcome& outcome) {
       "residual  {:.3g} ({} {:g}): natural map over |q|\n"
       "energy    {:.12g}: p.W p / 2 + q.p\n"
       "time      {:.3g} CPU s\n",
-      options.path, outcome.problem.contacts(), outcome.problem.dimension, options.method, solution.sweeps,
-      options.method == "nlgs" ? "sweeps" : "iterations", solution.residual,
+      options.path, outcome.problem.contacts(), outcome.problem.dimension, name_of(solution.method),
+      solution.sweeps, solution.method == ContactMethod::nlgs ? "sweeps" : "iterations", solution.residual,
       solution.converged ? "converged to" : "NOT converged to", options.solver.tolerance, solution.energy,
       outcome.cpu_seconds);
   if (outcome.stored_residual)
@@ -66,7 +69,12 @@ void print_table(const SolveOptions& options, const Outcome& outcome) {
 
 void solve(SolveOptions& options) {
   require(options.solver.tolerance >= 0, "--tolerance must be >= 0, got {}", options.solver.tolerance);
-  options.solver.method = options.method == "nlgs" ? ContactMethod::nlgs : ContactMethod::nesterov;
+  options.solver.method = options.method == "auto"   ? ContactMethod::automatic
+                          : options.method == "nlgs" ? ContactMethod::nlgs
+                                                     : ContactMethod::nesterov;
+  require(options.output.empty() || !std::filesystem::exists(options.output) ||
+              !std::filesystem::equivalent(options.output, options.path),
+          "--output {} is the problem itself; give another file", options.output);
   Outcome outcome;
   FclibFile file = read_fclib(options.path);
   outcome.problem = std::move(file.problem);
@@ -75,6 +83,8 @@ void solve(SolveOptions& options) {
   const std::clock_t start = std::clock();
   outcome.solution = solve_contact_problem(outcome.problem, options.solver);
   outcome.cpu_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  if (!options.output.empty())
+    write_fclib(options.output, {.problem = outcome.problem, .impulse = outcome.solution.impulse});
   options.json ? print_json(options, outcome) : print_table(options, outcome);
   if (!outcome.solution.converged) throw ExitCode{not_converged};
 }
@@ -85,19 +95,24 @@ void add_solve_verb(CLI::App& app) {
   auto options = std::make_shared<SolveOptions>();
   CLI::App* verb = app.add_subcommand("solve", "Solve a frictional contact problem in FCLIB's HDF5 format");
   verb->add_option("FILE", options->path, "local (W, q, mu) or global (M, H, f, w, mu) problem")->required();
-  verb->add_option("--method", options->method, "nesterov or nlgs")
-      ->check(CLI::IsMember({"nesterov", "nlgs"}))
+  verb->add_option(
+      "-o,--output", options->output,
+      "HDF5 file for the problem, local, and its solution: impulses solution/r, velocities solution/u");
+  verb->add_option("--method", options->method, "nesterov, nlgs, or auto: both by turns until one converges")
+      ->check(CLI::IsMember({"auto", "nesterov", "nlgs"}))
       ->capture_default_str();
   verb->add_option("--tolerance", options->solver.tolerance, "on the natural-map residual over |q|")
       ->capture_default_str();
-  verb->add_option("--max-sweeps", options->solver.max_sweeps, "sweeps of nlgs, iterations of nesterov")
+  verb->add_option("--max-sweeps", options->solver.max_sweeps, "sweeps of nlgs, iterations of nesterov, each")
       ->check(CLI::Range(0, 2000000000))
       ->capture_default_str();
   verb->add_flag("--json", options->json, "one JSON object on stdout");
   verb->footer(
-      "Exit code 3: not converged; the best that was found is printed all the same.\n"
+      "Exit code 3: not converged; the best that was found is printed and written all the same.\n"
       "Examples:\n"
       "  softgrain solve problem.hdf5\n"
+      "  softgrain solve problem.hdf5 -o solution.hdf5      r and u of all contacts, for h5py: "
+      "f[\"solution/r\"][:]\n"
       "  softgrain solve problem.hdf5 --method nlgs --tolerance 1e-5 --json");
   verb->callback([options] { solve(*options); });
 }

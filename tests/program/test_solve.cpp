@@ -2,8 +2,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "softgrain/contact/contact_problem.hpp"
+#include "softgrain/io/fclib.hpp"
 #include "support/subprocess.hpp"
+#include "support/temporary_directory.hpp"
 
+using namespace softgrain;
 using namespace softgrain::test;
 
 namespace {
@@ -52,6 +56,29 @@ TEST_CASE("solve shows a table to people") {
   CHECK(result.out.find("89 contacts in 2D") != std::string::npos);
   CHECK(result.out.find("nlgs, 40 sweeps") != std::string::npos);
   CHECK(result.out.find("converged to 1e-05") != std::string::npos);
+}
+
+TEST_CASE("solve writes impulses and velocities beside the problem, and what is read back is the solution") {
+  const TemporaryDirectory directory;
+  const std::string file = (directory.path() / "solution.hdf5").string();
+  const ProcessResult result = solve({small, "-o", file, "--json"});
+  REQUIRE(result.exit_code == 0);
+  const FclibFile written = read_fclib(file), original = read_fclib(small);
+  CHECK(written.problem.q == original.problem.q);
+  CHECK(written.problem.friction == original.problem.friction);
+  // u = W r + q with the W of the problem that was given, and the residual that was printed
+  std::vector<double> u = original.problem.q;
+  REQUIRE(written.stored_impulse.size() == u.size());
+  for (const MatrixEntry& entry : original.problem.W)
+    u[entry.row] += entry.value * written.stored_impulse[entry.column];
+  for (std::size_t k = 0; k < u.size(); ++k)
+    CHECK(written.stored_velocity[k] == doctest::Approx(u[k]).epsilon(1e-9));
+  const double residual = assess_impulses({original.problem, written.stored_impulse}, 1).residual;
+  CHECK(residual ==
+        doctest::Approx(nlohmann::json::parse(result.out).at("natural_map_residual")).epsilon(1e-3));
+
+  CHECK(solve({file, "-o", file}).exit_code == 2);  // never over the problem
+  CHECK(solve({small, "-o", (directory.path() / "no/such/folder.hdf5").string()}).exit_code == 4);
 }
 
 TEST_CASE("solve that does not converge ends with exit code 3 and prints what it has") {

@@ -89,6 +89,42 @@ TEST_CASE("NLGS and Nesterov find the same velocities and energy where both reac
   }
 }
 
+TEST_CASE("what converges does not depend on the unit of impulse, nor in how many sweeps") {
+  for (const char* name : {"FrictionContactProblem00071", "LMGC_100_PR_PerioBox-i00361-60-03000"})
+    for (const ContactMethod method : {ContactMethod::nesterov, ContactMethod::nlgs}) {
+      CAPTURE(name);
+      const ContactProblem problem = read(name).problem;
+      const ContactSolution solution = solve_contact_problem(problem, {.method = method});
+      for (const double unit : {1e-9, 1e9}) {  // impulses in 1e9 and 1e-9 N s
+        ContactProblem scaled = problem;
+        for (MatrixEntry& entry : scaled.W) entry.value *= unit;
+        const ContactSolution other = solve_contact_problem(scaled, {.method = method});
+        CHECK(other.converged);
+        CHECK(other.sweeps == solution.sweeps);
+        CHECK((vector_of(other.velocity) - vector_of(solution.velocity)).norm() <
+              1e-7 * vector_of(problem.q).norm());
+        CHECK(unit * vector_of(other.impulse).norm() == doctest::Approx(vector_of(solution.impulse).norm()));
+      }
+    }
+}
+
+TEST_CASE("the default tries the other method before it gives up: friction coefficients of 5 to 100") {
+  for (const double mu : {5.0, 10.0, 100.0}) {
+    CAPTURE(mu);
+    ContactProblem problem = read("FrictionContactProblem00071").problem;
+    problem.friction.assign(problem.friction.size(), mu);
+    const ContactSolution solution = solve_contact_problem(problem, {});
+    CHECK(solution.converged);
+    CHECK(solution.method == ContactMethod::nlgs);
+    const Eigen::VectorXd p = vector_of(solution.impulse);
+    CHECK(siconos_error(problem, p, dense_W(problem) * p + vector_of(problem.q)) < 1.1e-8);
+  }
+  const ContactSolution hopeless =
+      solve_contact_problem(read("FrictionContactProblem00071").problem, {.tolerance = 0, .max_sweeps = 30});
+  CHECK_FALSE(hopeless.converged);
+  CHECK(hopeless.sweeps == 30);
+}
+
 TEST_CASE("NLGS needs no more sweeps than Siconos' NSGS does") {
   struct Rival {
     const char* name;

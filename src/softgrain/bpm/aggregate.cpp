@@ -142,9 +142,10 @@ void normalise(Aggregate& grain) {
 }  // namespace
 
 Aggregate prepare_aggregate(const AggregateOptions& options) {
-  require(options.primaries >= 7, "a grain needs at least 7 primaries, got {}", options.primaries);
-  require(options.size_ratio >= 1 && options.size_ratio <= 4,
-          "size ratio of primaries must be in [1, 4], got {}", options.size_ratio);
+  require(options.primaries >= fewest_primaries, "a grain needs at least {} primaries, got {}",
+          fewest_primaries, options.primaries);
+  require(options.size_ratio >= 1 && options.size_ratio <= largest_size_ratio,
+          "size ratio of primaries must be in [1, {}], got {}", largest_size_ratio, options.size_ratio);
   const int count = static_cast<int>(std::ceil(1.5 * options.primaries));
   Aggregate grain =
       relaxed(cut_out(contracted(loose_disks(count, options)), options.primaries), options.gamma);

@@ -7,6 +7,9 @@
 
 namespace softgrain {
 
+inline constexpr int fewest_primaries = 7;       ///< of a grain
+inline constexpr double largest_size_ratio = 4;  ///< of primaries
+
 /// How a grain is made of primary particles.
 struct AggregateOptions {
   int primaries = 1750;

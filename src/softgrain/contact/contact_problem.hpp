@@ -26,20 +26,24 @@ struct SolvedContactProblem {
 /// become of the order of 1 and u, and the natural map, which adds p to u, weighs them alike.
 SolvedContactProblem in_natural_units(SolvedContactProblem solved);
 
-enum class ContactMethod { nesterov, nlgs };
+/// automatic: Nesterov's and NLGS by turns, each from where it was, until one converges.
+enum class ContactMethod { automatic, nesterov, nlgs };
 
 struct ContactProblemOptions {
-  ContactMethod method = ContactMethod::nesterov;
+  ContactMethod method = ContactMethod::automatic;
   double tolerance = 1e-8;  ///< on the natural-map residual over |q|
-  int max_sweeps = 100000;
+  int max_sweeps = 100000;  ///< of each method
 };
 
 /// The best iterate that was seen.
 struct ContactSolution {
-  std::vector<double> impulse;   ///< p [N s], not unique
-  std::vector<double> velocity;  ///< u = W p + q [m/s]
-  int sweeps = 0;                ///< sweeps of NLGS or iterations of Nesterov's method
-  double residual = 0;     ///< |natural map| / |q|, as Siconos' fc2d_compute_error and fc3d_compute_error
+  std::vector<double> impulse;                     ///< p [N s], not unique
+  std::vector<double> velocity;                    ///< u = W p + q [m/s]
+  ContactMethod method = ContactMethod::nesterov;  ///< that found it
+  int sweeps = 0;  ///< of that method: sweeps of NLGS or iterations of Nesterov's
+  /// |natural map| / |q| with impulses in units of 1/mean W_nn, so that no unit matters; in these units that
+  /// of Siconos' fc2d_compute_error and fc3d_compute_error
+  double residual = 0;
   double energy = 0;       ///< 1/2 p.W p + q.p [J]
   bool converged = false;  ///< residual <= tolerance
 };
@@ -48,7 +52,7 @@ struct ContactSolution {
 ContactSolution assess_impulses(const SolvedContactProblem& solved, double tolerance);
 
 /// Solves from p = 0 until the tolerance, max_sweeps, or a residual that has not fallen for 20 000 sweeps and
-/// four fifths of all.
+/// four fifths of all. Returns the better of both methods where neither converges.
 ContactSolution solve_contact_problem(const ContactProblem& problem, const ContactProblemOptions& options);
 
 }  // namespace softgrain

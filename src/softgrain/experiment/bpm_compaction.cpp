@@ -7,6 +7,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/arrays.hpp"
+#include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/isotropic_path.hpp"
 #include "softgrain/experiment/packing_row.hpp"
 #include "softgrain/observe/outlines.hpp"
@@ -19,9 +20,7 @@ namespace {
 /// each per cent of strain.
 constexpr double close_packing_overlap = 5e-4;
 constexpr double close_packing_fraction = 0.82;
-
-/// Beyond this mean overlap the contact problem is not solved at all.
-constexpr double largest_overlap = 0.05;
+constexpr double fullest_fraction = 0.95;  // no random packing of disks is as dense, overlaps included
 
 /// sigma_I = F0/<a0> is the same in every grain.
 std::vector<Attraction> laws_of(const Case& c, const BpmSample& sample) {
@@ -55,7 +54,7 @@ BpmCompaction::BpmCompaction(const Case& c, BoxSample box)
     : BpmCompaction(c, box, fill_box(box, prepare_library(c), c)) {}
 
 BpmCompaction::BpmCompaction(const Case& c, BoxSample box, BpmSample sample)
-    : BpmSimulation(c, box_path(c, box.height, c.time.step), laws_of(c, sample), sample.particles,
+    : BpmSimulation(c, box_path(c, box.height, bonded_time_step(c)), laws_of(c, sample), sample.particles,
                     friction_rule(c, sample.particles.grain), skin_of(sample)),
       box_(std::move(box)),
       begin_(std::move(sample.begin)),
@@ -68,15 +67,16 @@ void BpmCompaction::judge(const StepReport& report) {
   const double most = case_.loading.max_overlap;
   const bool close_packed =
       report.overlap_mean > close_packing_overlap && solid_fraction() > close_packing_fraction;
+  if (close_packed && solid_fraction() > fullest_fraction)
+    throw NumericalError(
+        fmt::format("primaries fill {:.3f} of the box, more than fits: they have passed through each other "
+                    "or the walls; use a "
+                    "smaller time.step or more solver.max_sweeps",
+                    solid_fraction()));
   if (most > 0 && report.overlap_mean >= most)
     drive_.state.ended = WallDrive::End::max_overlap;
   else if (close_packed)
     drive_.state.ended = WallDrive::End::close_packing;
-  else if (report.overlap_mean > largest_overlap)
-    throw NumericalError(fmt::format(
-        "primaries overlap by {:.2g} of their radius in the mean, far from their close packing; use "
-        "a smaller time.step or more solver.max_sweeps",
-        report.overlap_mean));
 }
 
 std::string BpmCompaction::early_end() const {

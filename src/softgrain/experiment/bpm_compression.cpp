@@ -2,14 +2,11 @@
 
 #include <numbers>
 
-#include "softgrain/core/error.hpp"
+#include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/diametral_path.hpp"
 
 namespace softgrain {
 namespace {
-
-/// Beyond this mean overlap of the contacts, over the mean radius, the rigid primaries have no solution.
-constexpr double largest_overlap = 0.05;
 
 RigidParticles<2> grain_between_plates(const Case& c, const Aggregate& aggregate) {
   std::vector<Vec<2>> position = aggregate.position;
@@ -42,22 +39,12 @@ BpmCompression::BpmCompression(const Case& c)
                                            .seed = static_cast<std::uint64_t>(c.sample.seed)})) {}
 
 BpmCompression::BpmCompression(const Case& c, const Aggregate& aggregate)
-    : BpmSimulation(c, std::make_unique<DiametralPath>(c.loading, c.grain.radius, c.time.step),
+    : BpmSimulation(c, std::make_unique<DiametralPath>(c.loading, c.grain.radius, bonded_time_step(c)),
                     {{.F0 = c.bpm.attraction, .gamma = c.bpm.exponent}}, grain_between_plates(c, aggregate),
                     friction_rule(c), 0.15 * aggregate.mean_distance * c.grain.radius),
       mean_distance_(aggregate.mean_distance * c.grain.radius) {}
 
 double BpmCompression::sigma_I() const { return case_.bpm.attraction / mean_distance_; }
-
-void BpmCompression::judge(const StepReport& report) {
-  if (report.overlap_mean > largest_overlap) {
-    throw NumericalError(
-        fmt::format("primaries overlap by {:.2g} of their radius in the mean, so the contact problem has no "
-                    "solution; use a smaller time.step or more solver.max_sweeps, or stop at a smaller "
-                    "loading.max_strain",
-                    report.overlap_mean));
-  }
-}
 
 double BpmCompression::width() const {
   const auto& p = dynamics_.particles;

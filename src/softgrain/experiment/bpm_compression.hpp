@@ -16,7 +16,6 @@ class BpmCompression final : public BpmSimulation {
 
  private:
   BpmCompression(const Case& the_case, const Aggregate& aggregate);
-  void judge(const StepReport& report) override;
   void complete_scene(Scene& scene) const override;
   double grain_area(int grain) const override;
   double width() const;

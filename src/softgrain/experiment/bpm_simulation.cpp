@@ -5,6 +5,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/arrays.hpp"
+#include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/observe/clusters.hpp"
 #include "softgrain/observe/stress.hpp"
 
@@ -15,12 +16,28 @@ namespace {
 /// 7).
 constexpr double link_gap = 0.05;
 
+/// Beyond this overlap, in the mean or of one contact, over the mean radius, rigid primaries have no
+/// solution. The deepest are about ten times the mean.
+constexpr double largest_mean_overlap = 0.05, largest_overlap = 0.5;
+
+void refuse_overlaps(const StepReport& report) {
+  if (report.overlap_mean <= largest_mean_overlap && report.overlap_max <= largest_overlap) return;
+  throw NumericalError(fmt::format(
+      "primaries overlap by {:.2g} of their radius in the mean, the deepest by {:.2g}, so the contact "
+      "problem has no solution; use a smaller time.step or more solver.max_sweeps, or stop at a smaller "
+      "loading.max_strain",
+      report.overlap_mean, report.overlap_max));
+}
+
 /// The first step starts without a guess of the impulses and may take this many times the sweeps.
 constexpr int first_step_factor = 200;
 
 Activation activation_of(const std::string& name) {
   if (name == "closed_at_mid_step") return Activation::closed_at_mid_step;
-  require(name == "anticipated", "contact.activation must be 'anticipated' or 'closed_at_mid_step', got '{}'",
+  if (name == "closed_at_end_of_step") return Activation::closed_at_end_of_step;
+  require(name == "anticipated",
+          "contact.activation must be 'anticipated', 'closed_at_mid_step' or 'closed_at_end_of_step', got "
+          "'{}'",
           name);
   return Activation::anticipated;
 }
@@ -47,8 +64,8 @@ RigidStepOptions rigid_step_options(const Case& c) {
 BpmSimulation::BpmSimulation(const Case& the_case, std::unique_ptr<PlatePath> path,
                              std::vector<Attraction> laws, RigidParticles<2> particles, FrictionRule friction,
                              double skin)
-    : case_(the_case),
-      drive_(the_case.loading, std::move(path), the_case.time.step),
+    : case_(with_bonded_time_step(the_case)),
+      drive_(case_.loading, std::move(path), case_.time.step),
       attraction_(std::move(laws)),
       dynamics_(std::move(particles), std::move(friction), rigid_step_options(the_case), skin) {
   height_start_ = plate_distance();
@@ -83,9 +100,10 @@ StepReport BpmSimulation::step() {
   }
   sums_.duration += dt;
   sums_.wall_work += dynamics_.work.wall;
-  sums_.dissipation -= dynamics_.work.contact;
+  sums_.dissipation -= dynamics_.work.contact + dynamics_.work.push_out;
   sums_.between -= dynamics_.work.between;
   sums_.friction -= dynamics_.work.friction;
+  refuse_overlaps(report);
   judge(report);
   return report;
 }

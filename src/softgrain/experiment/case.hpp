@@ -47,7 +47,7 @@ struct Case {
     double wall_friction = 0;  ///< mu against walls
     double restitution = 0;    ///< e_n, Newton's
     std::string activation =
-        "anticipated";      ///< when a contact is active: "anticipated" or "closed_at_mid_step"
+        "anticipated";      ///< when a contact is active: or "closed_at_mid_step", "closed_at_end_of_step"
     double push_out = 0.1;  ///< beta: share of an existing overlap removed in a step
   } contact;
 
@@ -72,7 +72,7 @@ struct Case {
   } loading;
 
   struct Time {
-    double step = 0.25e-6;  ///< dt of the primaries [s]
+    double step = 0;  ///< dt of the primaries [s]; 0: stable_bond_step
   } time;
 
   struct Sample {

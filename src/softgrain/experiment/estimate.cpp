@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/compaction_path.hpp"
 #include "softgrain/experiment/diametral_path.hpp"
 
@@ -49,7 +50,7 @@ double primaries(const Case& c) {
 }
 
 double time_step(const Case& c) {
-  if (c.experiment.model == "bpm") return c.time.step;
+  if (c.experiment.model == "bpm") return c.time.step > 0 ? c.time.step : stable_bond_step(c);
   if (c.mpm.time_step > 0) return c.mpm.time_step;
   if (is_implicit(c)) return 0.01 * smallest_radius(c) / c.loading.wall_velocity;
   // a share of the time in which a pressure wave crosses a cell; pi R^2 = 3.5 cells^2 h^2

@@ -67,6 +67,16 @@ class Datasets {
   }
   std::vector<MatrixEntry> matrix(const std::string& group, std::size_t rows, std::size_t columns) const;
 
+  /// FCLIB keeps such problems in groups named so, with coefficients mu_r.
+  void refuse_rolling_friction() const {
+    for (const std::string& path : reader_.datasets())
+      if (path.find("rolling") != std::string::npos || path.ends_with("/mu_r"))
+        throw UsageError(fmt::format(
+            "{}: dataset '{}' belongs to a problem with rolling friction, and softgrain solves contacts with "
+            "sliding friction only",
+            name_, path));
+  }
+
  private:
   Array read(const std::string& path) const {
     check(has(path), path, "is missing");
@@ -166,6 +176,7 @@ void refuse_equality_constraints(const Datasets& file, const std::string& group)
 FclibFile read_problem(const Datasets& file) {
   const bool local = file.has("/fclib_local");
   const std::string group = local ? "/fclib_local" : "/fclib_global";
+  file.refuse_rolling_friction();
   file.check(local || file.has(group), "/fclib_local", "is missing, and '/fclib_global' too");
   refuse_equality_constraints(file, group);
 

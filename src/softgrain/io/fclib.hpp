@@ -17,7 +17,7 @@ struct FclibFile {
 /// (fclib_global), M v = H r + f and u = H^T v + w, becomes local by W = H^T M^-1 H and q = H^T M^-1 f + w.
 /// Raises UsageError, naming file, dataset and remedy, for whatever is not such a file: other formats,
 /// missing or mismatched data, NaN, indices outside the matrix, mu < 0, spacedim other than 2 or 3, equality
-/// constraints, singular M.
+/// constraints, rolling friction, singular M.
 FclibFile read_fclib(const std::filesystem::path& file);
 
 /// Writes a local problem, W by compressed columns, with its solution (u and r). Raises IoError.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softgrain/bpm/aggregate.hpp"
+#include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/material/any_law.hpp"
 
@@ -42,10 +44,10 @@ std::vector<Key> all_keys() {
       KEY(grain.radius, "mm", positive(), "radius R of the grain"),
       KEY(grain.density, "kg/m^3", positive(), "density rho; the grain weighs rho pi R^2 per metre of depth"),
 
-      KEY(bpm.primaries, "", from_to(7, 1e6),
+      KEY(bpm.primaries, "", from_to(fewest_primaries, 1e6),
           "number of primary particles in a grain; in a box: in each, or in the smallest (bpm.equal)"),
-      KEY(bpm.size_ratio, "", from_to(1, 10), "largest over smallest primary diameter"),
-      KEY(bpm.attraction, "N/m", at_least(0),
+      KEY(bpm.size_ratio, "", from_to(1, largest_size_ratio), "largest over smallest primary diameter"),
+      KEY(bpm.attraction, "N/m", positive(),
           "attraction F0 between touching primaries of the grain, per metre of depth (diametral)"),
       KEY(bpm.cohesive_pressure, "MPa", positive(),
           "internal cohesive pressure sigma_I = F0/<a0>, the same in all grains: F0 follows the size of their "
@@ -77,8 +79,9 @@ std::vector<Key> all_keys() {
           "coefficient of friction mu between grains; diametral test of a bpm grain: between its primaries"),
       KEY(contact.wall_friction, "", at_least(0), "coefficient of friction mu against walls"),
       KEY(contact.restitution, "", from_to(0, 1), "Newton's coefficient of restitution e_n"),
-      KEY(contact.activation, "", one_of({"anticipated", "closed_at_mid_step"}),
-          "when a contact is active: when it may close within the step, or when it is closed at mid-step"),
+      KEY(contact.activation, "", one_of({"anticipated", "closed_at_mid_step", "closed_at_end_of_step"}),
+          "when a contact is active: always, so that it may close within the step; or when it is closed at mid-step, or "
+          "will be at the end of the step"),
       KEY(contact.push_out, "", from_to(0, 1), "share beta of an existing overlap that is removed in a step"),
 
       KEY(solver.min_sweeps, "", at_least(1), "sweeps of the contact solver in every step"),
@@ -106,7 +109,8 @@ std::vector<Key> all_keys() {
           "vertical stress at which the walls leave their path: they keep it for loading.hold, which ends the run; 0: none "
           "(in a box)"),
 
-      KEY(time.step, "us", positive(), "time step dt"),
+      KEY(time.step, "us", at_least(0),
+          "time step dt (bpm); 0: stable step, a 43rd of the period of the bonds between the smallest primaries"),
 
       KEY(sample.seed, "", at_least(0),
           "seed of the random numbers; another seed is another sample of the same grain"),
@@ -167,6 +171,15 @@ std::string sweeps_reversed(const Case& c) {
   if (c.solver.min_sweeps <= c.solver.max_sweeps) return "";
   return fmt::format("solver.min_sweeps must not be above solver.max_sweeps: {} is above {}",
                      c.solver.min_sweeps, c.solver.max_sweeps);
+}
+
+std::string restitution_anticipated(const Case& c) {
+  if (c.experiment.model != "bpm" || c.contact.restitution == 0 || c.contact.activation != "anticipated")
+    return "";
+  return fmt::format(
+      "contact.restitution {} needs contact.activation \"closed_at_mid_step\" or \"closed_at_end_of_step\": "
+      "anticipated contacts stop the particles before they touch",
+      c.contact.restitution);
 }
 
 std::string diameters_reversed(const Case& c) {
@@ -244,7 +257,13 @@ const std::vector<Relation>& case_relations() {
       {{"loading.unload_by", "loading.unload_at"}, unloading_below_zero},
       {{"solver.min_sweeps", "solver.max_sweeps"}, sweeps_reversed},
       {{"sample.smallest_diameter", "sample.largest_diameter"}, diameters_reversed},
-      {{"time.step", "mpm.time_step", "loading.wall_velocity", "loading.max_strain", "grain.radius"},
+      {{"time.step", "bpm.attraction", "bpm.cohesive_pressure", "bpm.primaries", "bpm.size_ratio",
+        "bpm.exponent", "grain.radius", "grain.density", "sample.smallest_diameter", "loading.wall_velocity"},
+       bond_step_too_long},
+      {{"contact.restitution", "contact.activation"}, restitution_anticipated},
+      {{"time.step", "mpm.time_step", "loading.wall_velocity", "loading.max_strain", "grain.radius",
+        "grain.density", "bpm.attraction", "bpm.cohesive_pressure", "bpm.primaries", "bpm.size_ratio",
+        "bpm.exponent", "sample.smallest_diameter"},
        too_many_steps},
       {{"mpm.formulation", "mpm.contact_on", "experiment.loading"}, formulation_cannot},
       {{"loading.max_packing_fraction", "sample.packing_fraction"}, too_dense_from_the_start},

@@ -10,9 +10,6 @@
 namespace softgrain {
 namespace {
 
-/// So large that no impulse ever answers it: an inactive contact.
-constexpr double inactive_offset = 1e30;
-
 /// (s_a + s_b) x n: the surfaces' velocity at the contact.
 Vec<2> surface_velocity(const Vec<1>& spin_sum, const Vec<2>& n) { return spin_sum[0] * perpendicular(n); }
 Vec<3> surface_velocity(const Vec<3>& spin_sum, const Vec<3>& n) { return cross(spin_sum, n); }
@@ -41,18 +38,19 @@ void signorini_offset(const RigidContacts<Dim>& contacts, std::span<const Vec<Di
 template <int Dim>
 void signorini_offset(const RigidContacts<Dim>& contacts, std::span<const Vec<Dim>> velocity_start,
                       const ContactLaw& law, double dt, int begin, std::span<double> offset) {
-  const double open_rate = 1 / dt, closed_rate = law.push_out / dt;
   const double* gap = contacts.gap.data() + begin;
-  for (std::size_t k = 0; k < offset.size(); ++k) offset[k] = gap[k] * (gap[k] > 0 ? open_rate : closed_rate);
-  if (law.activation == Activation::anticipated) return;
+  if (law.activation == Activation::anticipated) {
+    const double open_rate = 1 / dt, closed_rate = law.push_out / dt;
+    for (std::size_t k = 0; k < offset.size(); ++k)
+      offset[k] = gap[k] * (gap[k] > 0 ? open_rate : closed_rate);
+    return;
+  }
+  const double ahead = law.activation == Activation::closed_at_end_of_step ? dt / 2 : 0;
   for (std::size_t k = 0; k < offset.size(); ++k) {
-    if (gap[k] > 0) {
-      offset[k] = inactive_offset;
-      continue;
-    }
     const int c = begin + static_cast<int>(k);
     const Vec<Dim> u = velocity_start[contacts.body_b[c]] - velocity_start[contacts.body_a[c]];
-    offset[k] += law.restitution * dot(contacts.normal[c], u);
+    const double u_n = dot(contacts.normal[c], u);
+    offset[k] = gap[k] + ahead * u_n <= 0 ? law.restitution * u_n : inactive_offset;
   }
 }
 

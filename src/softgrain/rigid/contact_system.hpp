@@ -12,8 +12,9 @@ namespace softgrain {
 
 /// When a contact is active, which decides where restitution acts (trajectories depend on it).
 enum class Activation {
-  anticipated,  ///< always: u_n + max(g, 0)/dt >= 0 lets a gap close but not cross; restitution needs g <= 0
-  closed_at_mid_step,  ///< only if g <= 0 at mid-step: Newton's u_n + e u_n^- >= 0 (Moreau; Siconos, LMGC90)
+  anticipated,            ///< always: u_n + max(g, 0)/dt >= 0 lets a gap close but not cross; needs e = 0
+  closed_at_mid_step,     ///< only if g <= 0 at mid-step, g = g^- + dt/2 u_n^-: u_n + e u_n^- >= 0 (Moreau)
+  closed_at_end_of_step,  ///< only if g + dt/2 u_n^- <= 0: closed at the end, if it goes on as it started
 };
 
 /// The choices of the contact law beside friction.
@@ -27,9 +28,12 @@ struct ContactLaw {
 inline std::array<Vec<2>, 1> tangents(const Vec<2>& n) { return {perpendicular(n)}; }
 std::array<Vec<3>, 2> tangents(const Vec<3>& n);
 
-/// q_n - u_n,free of each contact [m/s] (theory (6)-(8)): max(g, 0)/dt + beta min(g, 0)/dt, and e u_n^- where
-/// g <= 0; very large where the contact is inactive. `velocity_start` (bodies) [m/s] is that of the start of
-/// the step: u_n^- comes from it. Or of the contacts from `begin` on, as many as `offset` holds.
+/// Offset of a contact that does not exist in this step [m/s]: so large that no impulse ever answers it.
+inline constexpr double inactive_offset = 1e30;
+
+/// q_n - u_n,free of each contact [m/s] (theory (6)-(8)): max(g, 0)/dt + beta min(g, 0)/dt if anticipated;
+/// else e u_n^-, or inactive_offset. `velocity_start` (bodies) [m/s] is that of the start of the step: u_n^-
+/// comes from it. Or of the contacts from `begin` on, as many as `offset` holds.
 template <int Dim>
 void signorini_offset(const RigidContacts<Dim>& contacts, std::span<const Vec<Dim>> velocity_start,
                       const ContactLaw& law, double dt, std::vector<double>& offset);

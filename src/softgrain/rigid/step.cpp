@@ -20,9 +20,8 @@ RigidDynamics<Dim>::RigidDynamics(RigidParticles<Dim> bodies, FrictionRule frict
   require(law.restitution >= 0 && law.restitution <= 1, "restitution must be in [0, 1], got {}",
           law.restitution);
   require(law.push_out >= 0 && law.push_out <= 1, "push-out must be in [0, 1], got {}", law.push_out);
-  require(law.restitution == 0 || law.activation == Activation::closed_at_mid_step,
-          "restitution {} needs contacts that are active only when closed at mid-step: anticipation would "
-          "stop the "
+  require(law.restitution == 0 || law.activation != Activation::anticipated,
+          "restitution {} needs contacts that are active only when closed: anticipation would stop the "
           "particles before they touch",
           law.restitution);
   require(skin > 0, "skin must be > 0, got {} m", skin);
@@ -39,7 +38,9 @@ StepReport RigidDynamics<Dim>::step(const ForceField<Dim>& field, double dt) {
   // gaps and frames at x_m
   const SolverReport solver = solve(dt);  // v+ = v_free + M^-1 H p,  0 <= u_n + q_n _|_ p_n >= 0
   account_work(dt);
+  if (options.law.restitution > 0 && work.contact > 0 && friction_work() > 0) temper_restitution(dt);
   drift(particles, dt / 2);  // x = x_m + dt/2 v+
+  if (options.law.push_out > 0 && options.law.activation != Activation::anticipated) push_out(dt);
   return report(solver);
 }
 
@@ -75,9 +76,9 @@ void RigidDynamics<Dim>::prepare(int begin, int end, double dt) {
   detect_contacts(particles, begin, end, contacts);
   signorini_offset<Dim>(contacts, velocity_start_, options.law, dt, begin,
                         std::span(offset_).subspan(begin, end - begin));
-  if (options.law.activation == Activation::closed_at_mid_step)
+  if (options.law.activation != Activation::anticipated)
     for (int c = begin; c < end; ++c)
-      if (contacts.gap[c] > 0) contacts.impulse[c] = {};
+      if (offset_[c] == inactive_offset) contacts.impulse[c] = {};
 }
 
 /// Four contacts at once, without branches.

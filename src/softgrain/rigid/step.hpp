@@ -33,6 +33,7 @@ struct StepWork {
   double wall = 0;     ///< by moving walls
   double between = 0;  ///< of `contact`: between grains and with walls
   double friction = 0;  ///< of `between`: by sliding
+  double push_out = 0;  ///< against the force field, by a way out that adds no velocity
 };
 
 /// Overlaps of the contacts that carry impulse [m].
@@ -78,6 +79,9 @@ class RigidDynamics {
   SolverReport solve(double dt);
   SolverReport solve_in_single_precision(RigidContactSystem<Dim>& system, const SolverOptions& solver,
                                          double dt);
+  double friction_work() const;
+  void temper_restitution(double dt);
+  void push_out(double dt);
   void account_work(double dt);
   void account_contacts();
   Overlaps overlaps_of(const ContactBlock& block) const;
@@ -88,6 +92,8 @@ class RigidDynamics {
   std::vector<Vec<Dim>> force_, velocity_start_;
   std::vector<Spin<Dim>> spin_start_;
   std::vector<double> offset_;
+  std::vector<Vec<Dim>> velocity_kept_, pushes_;  // of push_out
+  std::vector<double> frictionless_;
   RigidContacts<Dim> replaced_;  // its memory serves the next list
   NarrowSweeps narrow_;
   std::vector<Overlaps> overlaps_;  // of each block

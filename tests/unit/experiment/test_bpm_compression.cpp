@@ -6,6 +6,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/bpm_compression.hpp"
+#include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/create.hpp"
 
 using namespace softgrain;
@@ -17,6 +18,7 @@ Case small_case() {
   Case c;
   c.bpm.primaries = 60;
   c.loading = {.wall_velocity = 4, .max_strain = 0.1, .unload_at = {}};
+  c.time.step = 0.25e-6;
   return c;
 }
 
@@ -262,11 +264,14 @@ TEST_CASE("a compression that cannot be run is refused with the key and the valu
     return [c] { BpmCompression{c}; };
   };
   CHECK_THROWS_WITH_AS(with([](Case& c) { c.contact.activation = "never"; })(),
-                       "contact.activation must be 'anticipated' or 'closed_at_mid_step', got 'never'",
+                       "contact.activation must be 'anticipated', 'closed_at_mid_step' or "
+                       "'closed_at_end_of_step', got 'never'",
                        UsageError);
   CHECK_THROWS_AS(with([](Case& c) { c.contact.restitution = 0.5; })(), UsageError);
   CHECK_THROWS_AS(with([](Case& c) { c.contact.push_out = 2; })(), UsageError);
   CHECK_THROWS_AS(with([](Case& c) { c.bpm.attraction = -1; })(), UsageError);
+  CHECK_THROWS_AS(with([](Case& c) { c.bpm.attraction = 0, c.time.step = 0; })(), UsageError);
+  CHECK_THROWS_AS(with([](Case& c) { c.time.step = 1.01 * critical_bond_step(c); })(), UsageError);
   CHECK_THROWS_AS(with([](Case& c) { c.bpm.primaries = 3; })(), UsageError);
   CHECK_THROWS_AS(with([](Case& c) { c.loading.wall_velocity = 0; })(), UsageError);
 }

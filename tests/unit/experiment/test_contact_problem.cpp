@@ -6,6 +6,7 @@
 #include "softgrain/contact/contact_problem.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/bpm_simulation.hpp"
+#include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/mpm_simulation.hpp"
 
@@ -71,7 +72,8 @@ TEST_CASE("W p + q of a step of bonded grains is the velocity at which their sur
     const Vec<2> t{-n[1], n[0]};
     const Vec<2> apart = particles.velocity[b] - particles.velocity[a];
     const double spin = particles.spin[a][0] + particles.spin[b][0];
-    const double offset = contacts.gap[k] * (contacts.gap[k] > 0 ? 1 : c.contact.push_out) / c.time.step;
+    const double offset =
+        contacts.gap[k] * (contacts.gap[k] > 0 ? 1 : c.contact.push_out) / bonded_time_step(c);
     CHECK(u[2 * k] == doctest::Approx(dot(n, apart) + offset).epsilon(1e-9));
     CHECK(std::abs(u[2 * k + 1] - (dot(t, apart) - spin)) < 1e-8);
     const double W_nn = 1 / particles.mass[a] + (b < particles.size() ? 1 / particles.mass[b] : 0);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "softgrain/experiment/create.hpp"
 #include "softgrain/io/case_file.hpp"
 #include "softgrain/io/case_text.hpp"
 #include "support/temporary_directory.hpp"
@@ -117,7 +118,9 @@ TEST_CASE("a value out of range is refused, with the range and the default") {
   CHECK(mentions(refusal("solver.max_sweeps = 3000000000"), "it must be at most 2147483647"));
   CHECK(mentions(refusal("sample.seed = -1"), "it must be >= 0"));
   CHECK(mentions(refusal("loading.unload_at = [0.1, -0.2]"), "loading.unload_at = -0.2 is out of range"));
-  CHECK(refusal("contact.restitution = 1").empty());
+  CHECK(refusal("contact.restitution = 1\ncontact.activation = \"closed_at_mid_step\"").empty());
+  CHECK(mentions(refusal("bpm.size_ratio = 4.01"), "it must be in [1, 4]"));
+  CHECK(mentions(refusal("bpm.attraction = 0"), "it must be > 0"));
   CHECK(refusal("sample.seed = 9223372036854775807").empty());
 }
 
@@ -130,6 +133,11 @@ TEST_CASE("keys that do not fit together are refused where the last of them stan
   CHECK(mentions(refusal("solver.min_sweeps = 100\nsolver.max_sweeps = 99"),
                  "case.toml:2:8: error: solver.min_sweeps"));
   CHECK(mentions(refusal("time.step = 1e-300"), "too many"));
+  CHECK(mentions(refusal("time.step = \"4 us\""),
+                 "time.step 4e-06 s is longer than the critical step of the bonds"));
+  CHECK(refusal("experiment.model = \"mpm\"\ntime.step = \"4 us\"").empty());
+  CHECK(mentions(refusal("contact.restitution = 0.5"), "contact.restitution 0.5 needs contact.activation"));
+  CHECK(refusal("experiment.model = \"mpm\"\ncontact.restitution = 0.5").empty());
   CHECK(mentions(refusal("experiment.model = \"mpm\"\nmpm.time_step = 1e-300"), "too many"));
   CHECK(mentions(refusal("experiment.loading = \"compaction\"\nloading.max_packing_fraction = 0.7"),
                  "0.7 is not above 0.7"));
@@ -140,6 +148,23 @@ TEST_CASE("keys that do not fit together are refused where the last of them stan
   CHECK(refusal("loading.unload_at = []\nloading.max_strain = 0.05").empty());
   CHECK(mentions(refusal("solver.max_sweeps = -1\nsolver.min_sweeps = 60"),
                  "1 error;"));  // 60 > 50 is not judged
+}
+
+TEST_CASE("what a bonded case may say can be run, at both ends of each range") {
+  const std::vector<std::string> small{"bpm.primaries=7", "loading.max_strain=0.05", "loading.unload_at=[]"};
+  for (const char* loading : {"diametral", "compaction"})
+    for (const char* set :
+         {"bpm.primaries=7", "bpm.size_ratio=1", "bpm.size_ratio=4", "bpm.attraction=1e-9",
+          "bpm.cohesive_pressure=1e-3", "bpm.exponent=1", "bpm.inner_friction=10", "contact.push_out=0",
+          "contact.push_out=1", "contact.activation=closed_at_mid_step",
+          "contact.activation=closed_at_end_of_step", "solver.relaxation=1.99", "loading.max_overlap=0.05",
+          "loading.wall_velocity=1e3"}) {
+      CAPTURE(set);
+      std::vector<std::string> sets = small;
+      sets.insert(sets.end(), {"sample.grains=3", "sample.packing_fraction=0.5",
+                               "experiment.loading=" + std::string(loading), set});
+      CHECK_NOTHROW(create_simulation(parse_case("", "case.toml", sets)));
+    }
 }
 
 TEST_CASE("--set goes the same way as the file, comes after it, and is named in errors") {

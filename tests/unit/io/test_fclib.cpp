@@ -176,6 +176,13 @@ TEST_CASE("global problems that cannot become local are refused") {
                  "equality constraints"));
 }
 
+TEST_CASE("a problem with rolling friction is refused as one") {
+  for (const char* path : {"/fclib_global_rolling/spacedim", "/fclib_local/vectors/mu_r"}) {
+    CAPTURE(path);
+    CHECK_THROWS_WITH_AS(read({{path, Integers{5}}}), doctest::Contains("rolling friction"), UsageError);
+  }
+}
+
 TEST_CASE("what is no HDF5 file, or half of one, is the user's mistake") {
   const TemporaryDirectory directory;
   CHECK_THROWS_WITH_AS(read_fclib(directory.path() / "none"), doctest::Contains("no such file"), UsageError);

@@ -130,20 +130,6 @@ TEST_CASE("force, walls and contacts do the work that changes the kinetic energy
   check_work<3>(Precision::full);
 }
 
-TEST_CASE_TEMPLATE("contacts dissipate: without forces and push-out they never do work", Dimension, Plane,
-                   Space) {
-  constexpr int Dim = Dimension::value;
-  auto dynamics =
-      free_bodies<Dim>({.solver = {.max_sweeps = 5000, .tolerance = 1e-12}, .law = {.push_out = 0}});
-  double dissipated = 0;
-  for (int step = 0; step < 60; ++step) {
-    dynamics.step(no_force<Dim>, 0.02);
-    REQUIRE(dynamics.work.contact < 1e-9);
-    dissipated -= dynamics.work.contact;
-  }
-  CHECK(dissipated > 1);
-}
-
 TEST_CASE("an anticipated contact lets a gap close within the step but not cross") {
   const Wall<2> floor{.point = {0, 0}, .normal = {0, 1}, .velocity = {}};
   for (const auto activation : {Activation::anticipated, Activation::closed_at_mid_step}) {
@@ -156,19 +142,6 @@ TEST_CASE("an anticipated contact lets a gap close within the step but not cross
     CHECK(dynamics.particles.velocity[0][1] == doctest::Approx(-speed).epsilon(1e-14));
     CHECK(dynamics.particles.position[0][1] == doctest::Approx(1 + gap - speed * dt / 2).epsilon(1e-14));
   }
-}
-
-TEST_CASE("a contact that has opened at mid-step forgets its impulse, so that flight takes one sweep") {
-  const Wall<2> floor{.point = {0, 0}, .normal = {0, 1}, .velocity = {}};
-  auto disk = rigid_particles<2>({{0, 1.001}}, {1}, {1}, {floor});
-  disk.velocity[0] = {0, -1};
-  const ContactLaw elastic{.restitution = 1, .push_out = 0, .activation = Activation::closed_at_mid_step};
-  RigidDynamics<2> dynamics(disk, frictionless, {.solver = {}, .law = elastic}, 0.5);
-  CHECK(dynamics.step(no_force<2>, 0.004).contacts == 1);
-  REQUIRE(dynamics.particles.velocity[0][1] == doctest::Approx(1).epsilon(1e-14));
-  const StepReport flight = dynamics.step(no_force<2>, 0.004);
-  CHECK(flight.sweeps == 1);
-  CHECK(flight.contacts == 0);
 }
 
 TEST_CASE("push-out removes its share of an overlap in a step") {

@@ -1,0 +1,83 @@
+#include "softgrain/experiment/bpm_step.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "softgrain/core/error.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Share of a grain's outline that its primaries fill.
+constexpr double filled = 0.8;
+
+/// Of the step, for the paper's grain [s].
+constexpr double paper_step = 0.25e-6;
+
+/// A wall moves at most this share of the radius of the smallest primary in a step.
+constexpr double wall_share = 0.01;
+
+bool between_plates(const Case& c) { return c.experiment.loading == "diametral"; }
+
+/// Radius and mass of the smallest primary of the smallest grain.
+struct SmallestPrimary {
+  double radius, mass;  // [m], [kg/m]
+
+  explicit SmallestPrimary(const Case& c) {
+    const double R = between_plates(c) ? c.grain.radius : c.sample.smallest_diameter / 2;
+    // diameters uniform from d to s d: <d^2>/d^2
+    const double s = c.bpm.size_ratio, mean_square = (1 + s + s * s) / 3;
+    const double share = 1 / (c.bpm.primaries * mean_square);  // of all primaries' area
+    radius = R * std::sqrt(filled * share);
+    mass = c.grain.density * std::numbers::pi * R * R * share;
+  }
+};
+
+}  // namespace
+
+double bond_period(const Case& c) {
+  const SmallestPrimary smallest(c);
+  const double mean_a0 = smallest.radius * (1 + c.bpm.size_ratio);
+  const double F0 = between_plates(c) ? c.bpm.attraction : c.bpm.cohesive_pressure * mean_a0;
+  const double a0 = 2 * smallest.radius;
+  return 2 * std::numbers::pi * std::sqrt(smallest.mass * a0 / (2 * c.bpm.exponent * F0));
+}
+
+double critical_bond_step(const Case& c) { return bond_period(c) / std::numbers::pi; }
+
+double stable_bond_step(const Case& c) {
+  const double by_bonds = paper_step * (bond_period(c) / bond_period(Case{}));
+  return std::min(by_bonds, wall_share * SmallestPrimary(c).radius / c.loading.wall_velocity);
+}
+
+double bonded_time_step(const Case& c) {
+  const double step = c.time.step > 0 ? c.time.step : stable_bond_step(c);
+  require(
+      std::isfinite(step) && step > 0,
+      "no time step: bpm.attraction {} N/m, bpm.cohesive_pressure {} Pa, bpm.exponent {} and all lengths and "
+      "densities must be > 0",
+      c.bpm.attraction, c.bpm.cohesive_pressure, c.bpm.exponent);
+  return step;
+}
+
+Case with_bonded_time_step(Case c) {
+  const std::string too_long = bond_step_too_long(c);
+  require(too_long.empty(), "{}", too_long);
+  c.time.step = bonded_time_step(c);
+  return c;
+}
+
+std::string bond_step_too_long(const Case& c) {
+  const double critical = critical_bond_step(c);
+  if (c.experiment.model != "bpm" || !(c.time.step > critical)) return "";
+  return fmt::format(
+      "time.step {:.3g} s is longer than the critical step of the bonds, {:.3g} s; use a smaller time.step, "
+      "or 0 for "
+      "the stable one, {:.3g} s",
+      c.time.step, critical, stable_bond_step(c));
+}
+
+}  // namespace softgrain

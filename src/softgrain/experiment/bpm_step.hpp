@@ -1,0 +1,32 @@
+#pragma once
+#include <string>
+
+#include "softgrain/experiment/case.hpp"
+
+namespace softgrain {
+
+/// Time steps of bonded grains, from the case alone: no grain needs to be prepared.
+///
+/// Two of the smallest primaries, of mass m and with a0 = 2 r, bonded with F0, have the period
+///   T = 2 pi sqrt(m a0 / (2 gamma F0)) [s],
+/// that of a spring of stiffness |F'(a0)| = gamma F0/a0. In a box F0 = sigma_I <a0>, in the smallest grain.
+double bond_period(const Case& the_case);
+
+/// T/pi [s], beyond which central differences of that spring have no bound: a longer step is refused.
+double critical_bond_step(const Case& the_case);
+
+/// What time.step = 0 stands for [s]: the share of T that 0.25 us is for the paper's grain of 1750 primaries
+/// (1/43, 7 % of the critical step), and no more than the walls need for 1 % of the radius of the smallest
+/// primary.
+double stable_bond_step(const Case& the_case);
+
+/// time.step, or the stable step where that is 0 [s]. Raises UsageError where the bonds have no period.
+double bonded_time_step(const Case& the_case);
+
+/// The case with that step. Raises UsageError for one that is too long.
+Case with_bonded_time_step(Case the_case);
+
+/// "time.step ... is longer than the critical ..." for a bonded case that gives such a step, else "".
+std::string bond_step_too_long(const Case& the_case);
+
+}  // namespace softgrain
