@@ -28,7 +28,7 @@ struct Packing {
   std::vector<Wall<2>> walls;
   double area = 0, side = 0;
 
-  Packing(int count, int cells) : grains({}, make_law("neo_hookean", 10e6, 0.45), 990, false) {
+  Packing(int count, int cells) : grains({}, make_law("neo_hookean", 10e6, 0.45), 990) {
     const BoxSample sample = sample_box({.grains = count});
     const auto shape = std::make_shared<const Topology>(disk_grid(cells));
     std::vector<GrainPlacement> placed;
@@ -36,7 +36,7 @@ struct Packing {
       placed.push_back({shape, grain.radius, grain.centre, grain.angle, {}});
       area += std::numbers::pi * grain.radius * grain.radius;
     }
-    grains = SoftGrains(std::move(placed), grains.law, grains.density, false);
+    grains = SoftGrains(std::move(placed), grains.law, grains.density);
     side = sample.width;  // square
     walls = {{{0, 0}, {0, 1}, {}},
              {{0, side}, {0, -1}, {0, -speed}},

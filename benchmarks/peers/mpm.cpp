@@ -61,7 +61,7 @@ SoftGrains soft_blocks(const VibratingBlocks& blocks, const std::shared_ptr<cons
   for (int b = 0; b < blocks.count; ++b)
     placed.push_back(
         {.topology = shape, .radius = blocks.side(), .centre = blocks.corner(b), .velocity = {}});
-  SoftGrains grains(placed, law, blocks.rho, false);
+  SoftGrains grains(placed, law, blocks.rho);
   for (GrainBatch& batch : grains.batches)
     for (int i = 0; i < shape->grid.nodes(); ++i) {
       const Vec<2> u = blocks.displacement(blocks.side() * shape->grid.node[i]);

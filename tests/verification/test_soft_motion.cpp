@@ -24,8 +24,7 @@ SoftGrains two_disks(int cells = 8, double v = 0.1) {
   return {{test::placed(shape, R, {0.5 - 0.15, 0.5 - 0.15}, {v, v}),
            test::placed(shape, R, {0.5 + 0.15, 0.5 + 0.15}, {-v, -v})},
           make_law("neo_hookean", 1000, 0.3),
-          1000,
-          false};
+          1000};
 }
 
 /// Smallest distance of a vertex of one outline to an edge of the other.
@@ -78,7 +77,7 @@ void show(const std::string& integrator, int cells, double v, double dt, const C
 double slide(double slope, double mu) {
   constexpr double g = 9.81, side = 0.01;
   ImplicitDynamics dynamics(
-      {{test::placed(test::square(3), side, {0, side / 2})}, make_law("neo_hookean", 1e6, 0.3), 1000, false},
+      {{test::placed(test::square(3), side, {0, side / 2})}, make_law("neo_hookean", 1e6, 0.3), 1000},
       {test::floor_at(0)},
       {.tolerance = 1e-6, .wall_friction = mu, .gravity = {g * std::sin(slope), -g * std::cos(slope)}});
   for (int k = 0; k < 100; ++k) dynamics.step(1e-3);
@@ -144,7 +143,7 @@ TEST_CASE("a column of three soft blocks carries its weight at the bottom, and t
     placed.push_back(test::placed(shape, a, {0, height + a / 2}));
     height += a;
   }
-  ImplicitDynamics dynamics({placed, make_law("neo_hookean", 1e5, 0.3), rho, false}, {test::floor_at(0)},
+  ImplicitDynamics dynamics({placed, make_law("neo_hookean", 1e5, 0.3), rho}, {test::floor_at(0)},
                             {.tolerance = 1e-6, .friction = 0.5, .wall_friction = 0.5, .gravity = {0, -g}});
   for (int k = 0; k < 100; ++k) dynamics.step(dt);
   const auto weight_from = [&](int first) {
@@ -169,7 +168,7 @@ TEST_CASE("a column of three soft blocks carries its weight at the bottom, and t
 }
 
 TEST_CASE("a stressed grain that is carried across ten cells keeps its stress: it has its own grid") {
-  SoftGrains grains({test::placed(test::disk(8), 1, {0, 0})}, make_law("neo_hookean", 1, 0.45), 1, false);
+  SoftGrains grains({test::placed(test::disk(8), 1, {0, 0})}, make_law("neo_hookean", 1, 0.45), 1);
   test::move_nodes(grains, [](int, const Vec<2>& x) {
     return Vec<2>{1.2 * x[0] + 0.1 * x[1] * x[1], 0.8 * x[1]};
   });

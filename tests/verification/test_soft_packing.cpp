@@ -17,18 +17,18 @@ namespace {
 
 constexpr double speed = 5;
 
-/// The curve through the vertices of a grain's outline as a polygon of four edges a span: each vertex in the
-/// middle of x_0 x_1 x_2 x_3 has weights by Catmull and Rom at xi = 0, 1/4, 1/2, 3/4.
+/// The curve through the vertices of a grain's outline as a polygon of eight edges a span: between the middle
+/// two of x_0 x_1 x_2 x_3, weights by Catmull and Rom, ((-xi + 2 xi^2 - xi^3)/2, ...).
 std::vector<Vec<2>> curve_of(const SoftGrains& grains, std::span<const Vec<2>> x, int grain) {
-  constexpr double weights[4][4] = {
-      {0, 1, 0, 0}, {-9, 111, 29, -3}, {-8, 72, 72, -8}, {-3, 29, 111, -9}};  // over 128
+  constexpr int edges = 8;
   const int begin = grains.outline_begin(grain), n = grains.outline_end(grain) - begin;
   std::vector<Vec<2>> curve;
   for (int v = 0; v < n; ++v)
-    for (const auto& w : weights) {
-      Vec<2> c;
-      for (int k = 0; k < 4; ++k) c += w[k] / (w[1] == 1 ? 1 : 128) * x[begin + (v + k - 1 + n) % n];
-      curve.push_back(c);
+    for (int k = 0; k < edges; ++k) {
+      const double s = static_cast<double>(k) / edges, r = 1 - s;
+      const auto vertex = [&](int of) { return x[begin + (v + of + n) % n]; };
+      curve.push_back(0.5 * (-s * r * r * vertex(-1) + (2 - 5 * s * s + 3 * s * s * s) * vertex(0) +
+                             (2 - 5 * r * r + 3 * r * r * r) * vertex(1) - r * s * s * vertex(2)));
     }
   return curve;
 }
@@ -75,7 +75,7 @@ Compaction compact(const Options& options, double dt, double last, double mark) 
     area += 3.141592653589793 * grain.radius * grain.radius;
     mean_radius += grain.radius / 20;
   }
-  SoftGrains grains(std::move(placed), make_law("neo_hookean", 1e7, 0.45), 990, false);
+  SoftGrains grains(std::move(placed), make_law("neo_hookean", 1e7, 0.45), 990);
   Dynamics dynamics(std::move(grains), test::box_walls(sample.width, speed), options);
   Compaction result;
   std::vector<Vec<2>> x;

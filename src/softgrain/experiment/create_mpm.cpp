@@ -11,9 +11,6 @@
 namespace softgrain {
 namespace {
 
-/// From this Poisson's ratio on, cells take their volume change in the mean, against locking.
-constexpr double locking_poisson_ratio = 0.49;
-
 /// What both integrators need: grains and walls.
 struct MpmSetup {
   std::vector<GrainPlacement> grains;
@@ -60,7 +57,7 @@ std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
   double smallest = setup.grains.front().radius;
   for (const GrainPlacement& grain : setup.grains) smallest = std::min(smallest, grain.radius);
   SoftGrains grains(std::move(setup.grains), make_law(c.mpm.law, c.mpm.young_modulus, c.mpm.poisson_ratio),
-                    c.grain.density, c.mpm.poisson_ratio >= locking_poisson_ratio);
+                    c.grain.density);
   if (c.mpm.integrator == "implicit") {
     // the lid goes down by 1 % of the smallest radius, at most, in a step
     const double dt = c.mpm.time_step > 0 ? c.mpm.time_step : 0.01 * smallest / c.loading.wall_velocity;

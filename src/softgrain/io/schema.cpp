@@ -62,7 +62,7 @@ std::vector<Key> all_keys() {
 
       KEY(mpm.law, "", one_of(law_names()), "elastic law"),
       KEY(mpm.young_modulus, "MPa", positive(), "Young's modulus E"),
-      KEY(mpm.poisson_ratio, "", between(-1, 0.5), "Poisson's ratio nu; from 0.49 on cells change volume in the mean"),
+      KEY(mpm.poisson_ratio, "", between(-1, 0.5), "Poisson's ratio nu"),
       KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points"),
       KEY(mpm.integrator, "", one_of({"implicit", "explicit"}), "backward Euler, or symplectic Euler with lumped masses"),
       KEY(mpm.formulation, "", one_of({"total_lagrangian", "updated_lagrangian"}),

@@ -1,15 +1,17 @@
 #pragma once
+#include "softgrain/material/dilatation.hpp"
 #include "softgrain/material/lame.hpp"
 #include "softgrain/material/plane_invariants.hpp"
 #include "softgrain/material/principal_stretches.hpp"
+#include "softgrain/material/volumetric.hpp"
 
 namespace softgrain {
 
 /// Corotated law (theory (40)): Hooke's in the turned frame of F = R S,
 /// psi = mu |S - 1|^2 + lambda/2 (tr S - 3)^2 (3D; plane strain has S_33 = 1).
-/// Finite at J = 0, so a point may invert under enough pressure.
+/// Finite at J = 0, so a point may turn inside out under enough pressure.
 struct Corotated {
-  static constexpr bool needs_positive_J = true;
+  static constexpr bool objective = true;
   double lambda = 0;  ///< [Pa]
   double mu = 0;      ///< shear modulus [Pa]
 
@@ -30,6 +32,11 @@ struct Corotated {
   }
   /// Speed of pressure waves [m/s] in the unstrained material.
   double wave_speed(double density) const { return Lame{lambda, mu}.wave_speed(density); }
+
+  /// The law without lambda/2 (tr S - 2)^2, that, and tr S, for mean dilatation in plane strain.
+  Corotated deviatoric() const { return {0.0, mu}; }
+  QuadraticVolume volume() const { return {lambda}; }
+  StretchDilatation dilatation() const { return {}; }
 
  private:
   // Plane strain: with t = s_1 + s_2 = sqrt(I + 2 J), psi = mu (I - 2 t + 2) + lambda/2 (t - 2)^2.

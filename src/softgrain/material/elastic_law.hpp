@@ -1,6 +1,5 @@
 #pragma once
 #include <concepts>
-#include <limits>
 
 #include "softgrain/math/tensor.hpp"
 #include "softgrain/math/wide.hpp"
@@ -19,26 +18,29 @@ concept RespondsTo = requires(const L& law, const Mat<Dim, T>& F) {
   { law.tangent(F) } -> std::same_as<Mat<Dim * Dim, T>>;
 };
 
-/// A law of one material point without history: parameters, and pure functions of F.
-/// wave_speed(density [kg/m^3]) [m/s] is that of pressure waves in the unstrained material;
-/// needs_positive_J says that the functions mean something only where det F > 0.
+/// A law of one material point without history: parameters, and pure functions of F, which mean something
+/// where det F > 0. wave_speed(density [kg/m^3]) [m/s] is that of pressure waves in the unstrained material;
+/// objective says that psi(Q F) = psi(F) for every rotation Q, as it must be in a grain that turns.
 template <class L, int Dim>
 concept ElasticLaw = RespondsTo<L, Dim, double> && RespondsTo<L, Dim, Wide> &&
     requires(const L& law, double density) {
   { law.wave_speed(density) } -> std::same_as<double>;
-  { L::needs_positive_J } -> std::convertible_to<bool>;
+  { L::objective } -> std::convertible_to<bool>;
 };
 
-/// An elastic law that comes apart as psi(F) = deviatoric().energy(F) + volume().energy(det F), so that a
-/// cell may take its volume change from the mean J of its points (mean dilatation, theory (43), against
-/// locking from nu = 0.49 on; the tangent stays symmetric). The first part keeps some stiffness against
-/// volume change, of the order of mu; what grows without bound towards nu = 1/2 is all in the second.
+/// An elastic law that comes apart as psi(F) = deviatoric().energy(F) + volume().energy(theta(F)), with theta
+/// one of the measures in dilatation.hpp, so that a cell may take its volume change from the mean theta of
+/// its points (mean dilatation, theory (43), against locking; the tangent stays symmetric). The first part
+/// keeps some stiffness against volume change, of the order of mu; what grows without bound towards nu = 1/2
+/// is all in the second.
 template <class L, int Dim>
-concept SplitLaw = ElasticLaw<L, Dim> && requires(const L& law, double J) {
+concept SplitLaw = ElasticLaw<L, Dim> && requires(const L& law, const Mat<Dim>& F, double J) {
   { law.deviatoric() } -> ElasticLaw<Dim>;
   { law.volume().energy(J) } -> std::same_as<double>;             // U [J/m^3]
   { law.volume().derivative(J) } -> std::same_as<double>;         // U' [Pa]
   { law.volume().second_derivative(J) } -> std::same_as<double>;  // U'' [Pa]
+  { law.dilatation().value(F) } -> std::same_as<double>;
+  { law.dilatation().gradient(F) } -> std::same_as<Mat<Dim>>;
 };
 
 /// A law with memory (VonMises is one). `L::State<T>` is plain data, one per point, owned by the caller and
@@ -57,14 +59,14 @@ template <class L, int Dim>
 concept HistoryLaw = RemembersIn<L, Dim, double> && RemembersIn<L, Dim, Wide> &&
     requires(const L& law, double density) {
   { law.wave_speed(density) } -> std::same_as<double>;
-  { L::needs_positive_J } -> std::convertible_to<bool>;
 };
 
-/// Whether the law may be asked about F, lane by lane; false where F has a NaN. Ask before the law, and
-/// reject the step: behind a logarithm of J <= 0 there are only NaN.
-template <class L, int Dim, class T>
-auto admissible(const L&, const Mat<Dim, T>& F) {
-  return determinant(F) > T(L::needs_positive_J ? 0.0 : -std::numeric_limits<double>::infinity());
+/// Whether a law may be asked about F, lane by lane: false where a point is turned inside out, which no
+/// material can be, or F has a NaN. Ask before the law, and reject the step: behind a logarithm of J <= 0
+/// there are only NaN, and laws without one go on with nonsense.
+template <int Dim, class T>
+auto admissible(const Mat<Dim, T>& F) {
+  return determinant(F) > T(0.0);
 }
 
 }  // namespace softgrain

@@ -1,4 +1,5 @@
 #pragma once
+#include "softgrain/material/dilatation.hpp"
 #include "softgrain/material/lame.hpp"
 #include "softgrain/material/plane_invariants.hpp"
 #include "softgrain/material/principal_stretches.hpp"
@@ -10,7 +11,7 @@ namespace softgrain {
 /// Hencky's law (theory (40)-(41)): Hooke's in the logarithmic strains e_a = ln s_a of the principal
 /// stretches, psi = mu sum_a e_a^2 + lambda/2 (ln J)^2. The basis of J2 plasticity at finite strain.
 struct Hencky {
-  static constexpr bool needs_positive_J = true;
+  static constexpr bool objective = true;
   double lambda = 0;  ///< [Pa]
   double mu = 0;      ///< shear modulus [Pa]
 
@@ -32,9 +33,10 @@ struct Hencky {
   /// Speed of pressure waves [m/s] in the unstrained material.
   double wave_speed(double density) const { return Lame{lambda, mu}.wave_speed(density); }
 
-  /// The law without lambda/2 (ln J)^2, for mean dilatation.
+  /// The law without lambda/2 (ln J)^2, that, and J, for mean dilatation.
   Hencky deviatoric() const { return {0.0, mu}; }
   LogVolume volume() const { return {lambda}; }
+  Determinant dilatation() const { return {}; }
 
  private:
   // Plane strain: psi = (lambda + mu)/2 (ln J)^2 + mu f(s), where s = I / (2 J) = cosh x, x = e_1 - e_2, and

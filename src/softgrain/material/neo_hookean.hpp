@@ -1,4 +1,7 @@
 #pragma once
+#include <algorithm>
+
+#include "softgrain/material/dilatation.hpp"
 #include "softgrain/material/lame.hpp"
 #include "softgrain/material/volumetric.hpp"
 #include "softgrain/math/log_inverse.hpp"
@@ -11,7 +14,7 @@ namespace softgrain {
 /// Stress and tangent are the innermost kernels, hence always_inline.
 template <class Volume>
 struct NeoHookean {
-  static constexpr bool needs_positive_J = true;
+  static constexpr bool objective = true;
   double mu = 0;  ///< shear modulus [Pa]
   Volume volumetric;
 
@@ -31,13 +34,17 @@ struct NeoHookean {
     for (std::size_t k = 0; k < P.c.size(); ++k) P.c[k] = mu * F.c[k] + h * cof.c[k];
     return P;
   }
-  /// h(J) [Pa] of several points at once.
+  /// h_p = U'(mean J) - mu / J_p [Pa] of N points that share one mean J. With all J near one the inverses and
+  /// the logarithm are those of log_inverse.
   template <class T, std::size_t N>
-  [[gnu::always_inline]] std::array<T, N> cofactor_factors(const std::array<T, N>& J) const {
-    const LogInverse<T, N> of_J = log_inverse(J);
+  [[gnu::always_inline]] std::array<T, N> cofactor_factors(const std::array<T, N>& J, const T& mean_J) const {
+    std::array<T, N + 1> numbers;
+    std::copy(J.begin(), J.end(), numbers.begin());
+    numbers[N] = mean_J;
+    const LogInverse<T, N + 1> of = log_inverse(numbers);
+    const T pressure = volumetric.kirchhoff(mean_J, of.log[N]) * of.inverse[N];
     std::array<T, N> h;
-    for (std::size_t k = 0; k < N; ++k)
-      h[k] = (volumetric.kirchhoff(J[k], of_J.log[k]) - mu) * of_J.inverse[k];
+    for (std::size_t p = 0; p < N; ++p) h[p] = pressure - mu * of.inverse[p];
     return h;
   }
 
@@ -58,9 +65,10 @@ struct NeoHookean {
   /// Speed of pressure waves [m/s] in the unstrained material.
   double wave_speed(double density) const { return Lame{volumetric.lambda, mu}.wave_speed(density); }
 
-  /// The law without U(J), for mean dilatation: psi = deviatoric().energy(F) + volume().energy(mean J).
+  /// The law without U(J), U, and J, for mean dilatation.
   NeoHookean<NoVolume> deviatoric() const { return {mu, {}}; }
   Volume volume() const { return volumetric; }
+  Determinant dilatation() const { return {}; }
 };
 
 /// From Young's modulus E [Pa] and Poisson's ratio nu; UsageError as lame(E, nu).

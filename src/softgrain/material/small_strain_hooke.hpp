@@ -1,5 +1,7 @@
 #pragma once
+#include "softgrain/material/dilatation.hpp"
 #include "softgrain/material/lame.hpp"
+#include "softgrain/material/volumetric.hpp"
 #include "softgrain/math/tensor.hpp"
 
 namespace softgrain {
@@ -7,7 +9,7 @@ namespace softgrain {
 /// Hooke's law (theory (40)) in the small strain e = sym(F - 1): psi = mu e : e + lambda/2 (tr e)^2.
 /// For small rotations only: a rotated, unstrained point has stress. Its tangent is constant.
 struct SmallStrainHooke {
-  static constexpr bool needs_positive_J = false;
+  static constexpr bool objective = false;
   double lambda = 0;  ///< [Pa]
   double mu = 0;      ///< shear modulus [Pa]
 
@@ -38,6 +40,11 @@ struct SmallStrainHooke {
   }
   /// Speed of pressure waves [m/s].
   double wave_speed(double density) const { return Lame{lambda, mu}.wave_speed(density); }
+
+  /// The law without lambda/2 (tr e)^2, that, and tr e, for mean dilatation.
+  SmallStrainHooke deviatoric() const { return {0.0, mu}; }
+  QuadraticVolume volume() const { return {lambda}; }
+  LinearDilatation dilatation() const { return {}; }
 
  private:
   template <int Dim, class T>

@@ -1,5 +1,7 @@
 #pragma once
+#include "softgrain/material/dilatation.hpp"
 #include "softgrain/material/lame.hpp"
+#include "softgrain/material/volumetric.hpp"
 #include "softgrain/math/tensor.hpp"
 
 namespace softgrain {
@@ -9,7 +11,7 @@ namespace softgrain {
 /// reason that no rubber has: its stress falls below a stretch of 1/sqrt(3), and a point may turn inside out
 /// for a finite energy. Not for packings.
 struct StVenantKirchhoff {
-  static constexpr bool needs_positive_J = false;
+  static constexpr bool objective = true;
   double lambda = 0;  ///< [Pa]
   double mu = 0;      ///< shear modulus [Pa]
 
@@ -43,6 +45,11 @@ struct StVenantKirchhoff {
   }
   /// Speed of pressure waves [m/s] in the unstrained material.
   double wave_speed(double density) const { return Lame{lambda, mu}.wave_speed(density); }
+
+  /// The law without lambda/2 (tr E)^2, that, and tr E, for mean dilatation.
+  StVenantKirchhoff deviatoric() const { return {0.0, mu}; }
+  QuadraticVolume volume() const { return {lambda}; }
+  GreenDilatation dilatation() const { return {}; }
 
  private:
   template <int Dim, class T>

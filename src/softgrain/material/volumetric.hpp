@@ -3,9 +3,9 @@
 
 namespace softgrain {
 
-// Energies of volume change U(J) [J/m^3], J = det F, with U(1) = U'(1) = 0. `derivative` is U' and
-// `second_derivative` U'' [Pa]. `kirchhoff` is J U' [Pa], given ln J. Part of the hyperelastic laws, and what
-// mean dilatation evaluates at the mean J of a cell.
+// Energies of volume change U(J) [J/m^3], J = det F or another measure of dilatation.hpp, with
+// U(1) = U'(1) = 0. `derivative` is U' and `second_derivative` U'' [Pa]. `kirchhoff` is J U' [Pa], given ln
+// J. Part of the elastic laws, and what mean dilatation evaluates at the mean J of a cell.
 
 /// U = lambda/2 (ln J)^2: infinite at J = 0, but softer than linear for J > 1 and concave for J > e.
 struct LogVolume {

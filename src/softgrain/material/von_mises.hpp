@@ -8,7 +8,6 @@ namespace softgrain {
 /// Hencky, and flows at constant volume where |dev tau| would exceed sqrt(2/3) (yield_stress + hardening *
 /// alpha). The logarithmic strain makes the return to the yield surface that of small strain.
 struct VonMises {
-  static constexpr bool needs_positive_J = true;
   double lambda = 0;        ///< [Pa]
   double mu = 0;            ///< shear modulus [Pa]
   double yield_stress = 0;  ///< Kirchhoff stress at first yield in uniaxial tension [Pa]

@@ -7,31 +7,18 @@
 
 namespace softgrain {
 
-/// Laws with P = mu F + h(J) cof F, which give h of several points at once.
+/// Laws with P = mu F + h cof F, which give h of the four points of a cell from their J and the mean J.
 template <class Law>
-concept HasCofactorFactors = requires(const Law& law, const std::array<Wide, 4>& J) {
+concept HasCofactorFactors = requires(const Law& law, const std::array<Wide, 4>& J, const Wide& mean_J) {
   { law.mu } -> std::convertible_to<double>;
-  { law.cofactor_factors(J) } -> std::same_as<std::array<Wide, 4>>;
+  { law.cofactor_factors(J, mean_J) } -> std::same_as<std::array<Wide, 4>>;
 };
-
-/// h with U'(mean J) instead of the points' own U'(J).
-template <HasCofactorFactors Law>
-std::array<Wide, 4> factors_of_mean_dilatation(const Law& law, const MaterialPoint* points,
-                                               const std::array<Wide, 4>& J) {
-  double volume = 0;
-  Wide mean_J = 0.0;
-  for (int p = 0; p < 4; ++p) mean_J += points[p].volume * J[p], volume += points[p].volume;
-  const Wide pressure = law.volume().derivative(mean_J * Wide(1 / volume));
-  std::array<Wide, 4> h = law.deviatoric().cofactor_factors(J);
-  for (Wide& of_point : h) of_point += pressure;
-  return h;
-}
 
 /// A cell of eight grains, in its own coordinates u, v from 0 to 1 (node 0 at (0, 0), 1 at (1, 0), 2 at
 /// (1, 1), 3 at (0, 1)):
 ///   dx/du = (1 - v) e_01 + v e_32,  dx/dv = (1 - u) e_03 + u e_12,  e_ab = x_b - x_a.
 /// Point p lies at (u_(p mod 2), v_(p div 2)) and has the volume V_p J_p = (dx/du x dx/dv)/4 now. With laws
-/// P = mu F + h(J) cof F the force is
+/// P = mu F + h cof F the force is
 ///   f_a = sum_p V_p P_p dN_a/dX = mu sum_b L_ab x_b + sum_p h_p d(V_p J_p)/dx_a,
 /// half of the operations that F, P and V P dN_a/dX take.
 class CellInLanes {
@@ -51,6 +38,11 @@ class CellInLanes {
     for (int p = 0; p < 4; ++p)
       J[p] = cross(along_u_[p / 2], along_v_[p % 2]) * (shape.inverse_area[p] * inverse_square_radius);
     return J;
+  }
+
+  /// Mean J, weighted by volume: the area now, (e_02 x e_13)/2, over that at rest.
+  [[gnu::always_inline]] Wide mean_J(const CellShape& shape, const Wide& inverse_square_radius) const {
+    return cross(e_02_, e_03_ - e_01_) * (Wide(0.5 * shape.inverse_volume) * inverse_square_radius);
   }
 
   /// Adds f_a, from h of the four points.

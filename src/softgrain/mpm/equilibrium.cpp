@@ -12,15 +12,27 @@ namespace {
 
 using WideMat = Mat<2, Wide>;
 
-/// The four points of a cell in the eight grains: F of each.
+/// Q of a batch: by which each grain was turned when it was placed.
+WideMat placed_rotation(const GrainBatch& batch) {
+  const auto& [c, s] = batch.placed_along.c;
+  return {{c, -s, s, c}};
+}
+
+/// The four points of a cell in the eight grains: F of each. A law that is not objective needs F = 1 in the
+/// grain as it was placed: it sees Q^T F, which to an isotropic law is as good as F Q^T, and its forces are
+/// turned back by Q.
 struct CellState {
-  CellState(const GrainBatch& batch, int cell_index)
-      : cell(batch.topology->grid.cell[cell_index]), points(&batch.topology->points[4 * cell_index]) {
+  CellState(const GrainBatch& batch, int cell_index, bool turned_back)
+      : cell(batch.topology->grid.cell[cell_index]),
+        points(&batch.topology->points[4 * cell_index]),
+        volume(1 / batch.topology->cell_shapes[cell_index].inverse_volume) {
     // F = sum_a x_a (x) dN_a/dX = sum_(a > 0) (x_a - x_0) (x) dN_a/dX, as sum_a N_a = 1
     const Wide inverse_radius = 1.0 / batch.radius;
     std::array<Vec<2, Wide>, 4> edge;
     for (int a = 1; a < 4; ++a)
       edge[a] = inverse_radius * (batch.position[cell[a]] - batch.position[cell[0]]);
+    if (turned_back)
+      for (int a = 1; a < 4; ++a) edge[a] = transpose(placed_rotation(batch)) * edge[a];
     for (int p = 0; p < 4; ++p) {
       const auto& g = points[p].gradient;
       for (int i = 0; i < 2; ++i)
@@ -28,18 +40,26 @@ struct CellState {
           F[p](i, j) = edge[1][i] * g[1][j] + edge[2][i] * g[2][j] + edge[3][i] * g[3][j];
     }
   }
-  /// Mean J of the cell, weighted by volume.
-  Wide mean_dilatation(double& volume) const {
+  /// Mean of theta over the cell, weighted by volume.
+  template <class Dilatation>
+  Wide mean(const Dilatation& theta) const {
     Wide sum = 0.0;
-    volume = 0;
-    for (int p = 0; p < 4; ++p) sum += points[p].volume * determinant(F[p]), volume += points[p].volume;
+    for (int p = 0; p < 4; ++p) sum += points[p].volume * theta.value(F[p]);
     return sum * Wide(1 / volume);
   }
 
   const std::array<int, 4>& cell;
   const MaterialPoint* points;
+  double volume;  ///< [R^2]
   std::array<WideMat, 4> F;
 };
+
+/// visit(cell, state) for all cells of a batch.
+template <class Law, class Visit>
+void for_each_cell(const Law&, const GrainBatch& batch, Visit&& visit) {
+  for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell)
+    visit(cell, CellState(batch, cell, !Law::objective));
+}
 
 /// The lanes in which some J was not positive.
 class InvertedLanes {
@@ -66,6 +86,10 @@ class CellForce {
   void add(const WideMat& P, const MaterialPoint& point) {
     for (int a = 1; a < 4; ++a) node_[a] += of_point(P, point, a);
   }
+  /// f <- Q f
+  void turn(const WideMat& Q) {
+    for (int a = 1; a < 4; ++a) node_[a] = Q * node_[a];
+  }
   /// With R^2 of the volume and 1/R of the gradient.
   void add_to(WideVectors& force, const std::array<int, 4>& cell, Wide radius) {
     for (int a = 1; a < 4; ++a) {
@@ -83,32 +107,33 @@ class CellForce {
   std::array<Vec<2, Wide>, 4> node_;
 };
 
+/// P = dpsi_dev/dF + U'(mean theta) dtheta/dF at each point.
 template <class Law>
 CellForce cell_force(const Law& law, const CellState& state, InvertedLanes& inverted) {
+  const auto theta = law.dilatation();
+  const Wide pressure = law.volume().derivative(state.mean(theta));
   const auto stress = [&](int p) {
-    if (Law::needs_positive_J) inverted.note(determinant(state.F[p]));
-    return law.stress(state.F[p]);
+    inverted.note(determinant(state.F[p]));
+    return law.deviatoric().stress(state.F[p]) + pressure * theta.gradient(state.F[p]);
   };
   CellForce force(stress(0), state.points[0]);
   for (int p = 1; p < 4; ++p) force.add(stress(p), state.points[p]);
   return force;
 }
 
-/// With P = dpsi_dev/dF + U'(mean J) cof F.
 template <class Law>
-CellForce cell_force_mean_dilatation(const Law& law, const CellState& state, InvertedLanes& inverted) {
-  double volume = 0;
-  const Wide J = state.mean_dilatation(volume);
-  const Wide pressure = law.volume().derivative(J);
-  inverted.note(J);
-  CellForce force = cell_force(law.deviatoric(), state, inverted);
-  for (int p = 0; p < 4; ++p) force.add(pressure * cofactor(state.F[p]), state.points[p]);
-  return force;
+unsigned add_forces(const Law& law, const GrainBatch& batch, WideVectors& force) {
+  InvertedLanes inverted;
+  for_each_cell(law, batch, [&](int, const CellState& state) {
+    CellForce of_cell = cell_force(law, state, inverted);
+    if (!Law::objective) of_cell.turn(placed_rotation(batch));
+    of_cell.add_to(force, state.cell, batch.radius);
+  });
+  return inverted.lanes();
 }
 
 template <HasCofactorFactors Law>
-unsigned add_forces_of_cells(const Law& law, bool mean_dilatation, const GrainBatch& batch,
-                             WideVectors& force) {
+unsigned add_forces(const Law& law, const GrainBatch& batch, WideVectors& force) {
   const Topology& topology = *batch.topology;
   const Wide inverse_square_radius = 1.0 / (batch.radius * batch.radius);
   InvertedLanes inverted;
@@ -118,10 +143,8 @@ unsigned add_forces_of_cells(const Law& law, bool mean_dilatation, const GrainBa
     const CellInLanes cell(batch.position, nodes);
     const std::array<Wide, 4> J = cell.J(shape, inverse_square_radius);
     for (const Wide& of_point : J) inverted.note(of_point);
-    cell.add_force(shape, law.mu,
-                   mean_dilatation ? factors_of_mean_dilatation(law, &topology.points[4 * c], J)
-                                   : law.cofactor_factors(J),
-                   nodes, force);
+    const Wide mean_J = cell.mean_J(shape, inverse_square_radius);
+    cell.add_force(shape, law.mu, law.cofactor_factors(J, mean_J), nodes, force);
   }
   return inverted.lanes();
 }
@@ -147,112 +170,104 @@ void add_point_stiffness(const Mat<4, Wide>& A, const MaterialPoint& point, Cell
   }
 }
 
-template <class Law>
-void cell_stiffness(const Law& law, const CellState& state, CellStiffness& K) {
-  for (int p = 0; p < 4; ++p) add_point_stiffness(law.tangent(state.F[p]), state.points[p], K);
+/// K_ab += V U'' dtheta/dx_a (x) dtheta/dx_b, theta the mean over the cell
+void add_bulk_stiffness(const Wide& second_derivative, const std::array<Vec<2, Wide>, 4>& dtheta,
+                        CellStiffness& K) {
+  int pair = 0;
+  for (int a = 0; a < 4; ++a) {
+    const Vec<2, Wide> weighted = second_derivative * dtheta[a];
+    for (int b = 0; b <= a; ++b, ++pair)
+      for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 2; ++k) K[pair][2 * i + k] += weighted[i] * dtheta[b][k];
+  }
 }
 
 template <class Law>
-void cell_stiffness_mean_dilatation(const Law& law, const CellState& state, CellStiffness& K) {
-  double volume = 0;
-  const Wide J = state.mean_dilatation(volume);
-  const Wide pressure = law.volume().derivative(J);
-  const Wide bulk = law.volume().second_derivative(J) * Wide(1 / volume);
-  std::array<Vec<2, Wide>, 4> dJ{};  // sum_p V cof F . g_a
+void cell_stiffness(const Law& law, const CellState& state, CellStiffness& K) {
+  const auto theta = law.dilatation();
+  const Wide mean = state.mean(theta);
+  const Wide pressure = law.volume().derivative(mean);
+  std::array<Vec<2, Wide>, 4> dtheta{};  // of sum_p V_p theta_p
   for (int p = 0; p < 4; ++p) {
+    const MaterialPoint& point = state.points[p];
     Mat<4, Wide> A = law.deviatoric().tangent(state.F[p]);
-    add_cofactor_derivative(A, pressure, state.F[p]);
-    add_point_stiffness(A, state.points[p], K);
-    const WideMat cof = cofactor(state.F[p]);
-    for (int a = 0; a < 4; ++a) {
-      const Vec<2>& g = state.points[p].gradient[a];
-      for (int i = 0; i < 2; ++i) dJ[a][i] += state.points[p].volume * (cof(i, 0) * g[0] + cof(i, 1) * g[1]);
-    }
-  }
-  int pair = 0;
-  for (int a = 0; a < 4; ++a)
-    for (int b = 0; b <= a; ++b, ++pair)
+    theta.add_second_derivative(A, pressure, state.F[p]);
+    add_point_stiffness(A, point, K);
+    const WideMat gradient = theta.gradient(state.F[p]);
+    for (int a = 0; a < 4; ++a)
       for (int i = 0; i < 2; ++i)
-        for (int k = 0; k < 2; ++k) K[pair][2 * i + k] += bulk * dJ[a][i] * dJ[b][k];
+        dtheta[a][i] +=
+            point.volume * (gradient(i, 0) * point.gradient[a][0] + gradient(i, 1) * point.gradient[a][1]);
+  }
+  add_bulk_stiffness(law.volume().second_derivative(mean) * Wide(1 / state.volume), dtheta, K);
+}
+
+/// K_ab <- Q K_ab Q^T
+void turn(const WideMat& Q, CellStiffness& K) {
+  for (auto& k : K) k = (Q * WideMat{k} * transpose(Q)).c;
 }
 
 template <class Law>
 Wide cell_energy(const Law& law, const CellState& state) {
-  Wide sum = 0.0;
-  for (int p = 0; p < 4; ++p) sum += state.points[p].volume * law.energy(state.F[p]);
+  Wide sum = state.volume * law.volume().energy(state.mean(law.dilatation()));
+  for (int p = 0; p < 4; ++p) sum += state.points[p].volume * law.deviatoric().energy(state.F[p]);
   return sum;
+}
+
+/// Points of one lane.
+template <class Law>
+void add_point_states(const Law& law, const CellState& state, const Mat<2>& Q, int lane,
+                      std::vector<PointState>& states) {
+  const Wide pressure = law.volume().derivative(state.mean(law.dilatation()));
+  for (int p = 0; p < 4; ++p) {
+    Mat<2> F;
+    for (std::size_t k = 0; k < 4; ++k) F.c[k] = state.F[p].c[k][lane];
+    PointState point{.F = (Law::objective ? F : Q * F) * transpose(Q), .stress = {}, .pressure = 0};
+    const Mat<2> P = law.deviatoric().stress(point.F) + pressure[lane] * law.dilatation().gradient(point.F);
+    point.stress = (1 / determinant(point.F)) * (P * transpose(point.F));
+    point.pressure = -trace(point.stress) / 2;
+    states.push_back(point);
+  }
 }
 
 }  // namespace
 
 unsigned internal_force(const SoftGrains& grains, const GrainBatch& batch, WideVectors& force) {
   force.assign(batch.position.size(), {});
-  return std::visit(
-      [&]<class Law>(const Law& law) {
-        if constexpr (HasCofactorFactors<Law>)
-          return add_forces_of_cells(law, grains.mean_dilatation, batch, force);
-        InvertedLanes inverted;
-        for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell) {
-          const CellState state(batch, cell);
-          if constexpr (SplitLaw<Law, 2>) {
-            if (grains.mean_dilatation) {
-              cell_force_mean_dilatation(law, state, inverted).add_to(force, state.cell, batch.radius);
-              continue;
-            }
-          }
-          cell_force(law, state, inverted).add_to(force, state.cell, batch.radius);
-        }
-        return inverted.lanes();
-      },
-      grains.law);
+  return std::visit([&](const auto& law) { return add_forces(law, batch, force); }, grains.law);
 }
 
 void add_stiffness(const SoftGrains& grains, const GrainBatch& batch, BatchedCholesky& matrix) {
   std::visit(
       [&]<class Law>(const Law& law) {
-        for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell) {
-          const CellState state(batch, cell);
+        for_each_cell(law, batch, [&](int cell, const CellState& state) {
           CellStiffness K{};
-          bool done = false;
-          if constexpr (SplitLaw<Law, 2>) {
-            if ((done = grains.mean_dilatation)) cell_stiffness_mean_dilatation(law, state, K);
-          }
-          if (!done) cell_stiffness(law, state, K);
+          cell_stiffness(law, state, K);
+          if (!Law::objective) turn(placed_rotation(batch), K);
           for (int pair = 0; pair < 10; ++pair) {
             const CellBlock& to = batch.topology->cell_blocks[10 * cell + pair];
             const auto& k = K[pair];
             matrix.add_block(to.block, to.transposed ? std::array<Wide, 4>{k[0], k[2], k[1], k[3]} : k);
           }
-        }
+        });
       },
       grains.law);
 }
 
 Wide elastic_energy(const SoftGrains& grains, const GrainBatch& batch) {
-  return std::visit(
-      [&]<class Law>(const Law& law) {
-        Wide sum = 0.0;
-        for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell) {
-          const CellState state(batch, cell);
-          if constexpr (SplitLaw<Law, 2>) {
-            if (grains.mean_dilatation) {
-              double volume = 0;
-              const Wide J = state.mean_dilatation(volume);
-              sum += cell_energy(law.deviatoric(), state) + volume * law.volume().energy(J);
-              continue;
-            }
-          }
-          sum += cell_energy(law, state);
-        }
-        return sum * (batch.radius * batch.radius);
+  Wide sum = 0.0;
+  std::visit(
+      [&](const auto& law) {
+        for_each_cell(law, batch, [&](int, const CellState& state) { sum += cell_energy(law, state); });
       },
       grains.law);
+  return sum * (batch.radius * batch.radius);
 }
 
 Wide least_J(const GrainBatch& batch) {
   Wide least = std::numeric_limits<double>::infinity();
   for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell) {
-    const CellState state(batch, cell);
+    const CellState state(batch, cell, false);
     for (const WideMat& F : state.F) least = min(determinant(F), least);
   }
   return least;
@@ -262,20 +277,13 @@ std::vector<PointState> point_states(const SoftGrains& grains, int grain) {
   const auto place = grains.batch_of(grain);
   const GrainBatch* batch = place.first;  // not a structured binding: clang 14 keeps those out of lambdas
   const int lane = place.second;
+  Mat<2> Q;
+  for (std::size_t k = 0; k < 4; ++k) Q.c[k] = placed_rotation(*batch).c[k][lane];
   std::vector<PointState> states;
   std::visit(
-      [&]<class Law>(const Law& law) {
-        for (int cell = 0; cell < static_cast<int>(batch->topology->grid.cell.size()); ++cell) {
-          const CellState state(*batch, cell);
-          for (int p = 0; p < 4; ++p) {
-            PointState point;
-            for (int k = 0; k < 4; ++k) point.F.c[k] = state.F[p].c[k][lane];
-            const double J = determinant(point.F);
-            point.stress = (1 / J) * (law.stress(point.F) * transpose(point.F));
-            point.pressure = -trace(point.stress) / 2;
-            states.push_back(point);
-          }
-        }
+      [&](const auto& law) {
+        for_each_cell(law, *batch,
+                      [&](int, const CellState& state) { add_point_states(law, state, Q, lane, states); });
       },
       grains.law);
   return states;

@@ -6,9 +6,8 @@
 
 namespace softgrain {
 
-SoftGrains::SoftGrains(std::vector<GrainPlacement> grains, AnyLaw material, double mass_density,
-                       bool dilatation)
-    : law(material), density(mass_density), mean_dilatation(dilatation) {
+SoftGrains::SoftGrains(std::vector<GrainPlacement> grains, AnyLaw material, double mass_density)
+    : law(material), density(mass_density) {
   require(density > 0, "the density must be > 0, got {} kg/m^3", density);
   place_.resize(grains.size());
   outline_begin_.push_back(0);
@@ -39,6 +38,8 @@ SoftGrains::SoftGrains(std::vector<GrainPlacement> grains, AnyLaw material, doub
     const double c = std::cos(placed.angle), s = std::sin(placed.angle);
     for (int free = lane; free < Wide::size; ++free) {  // the lanes without a grain repeat the last one
       batch.radius.set(free, placed.radius);
+      batch.placed_along[0].set(free, c);
+      batch.placed_along[1].set(free, s);
       for (int i = 0; i < placed.topology->grid.nodes(); ++i) {
         const Vec<2>& X = placed.topology->grid.node[i];
         const Vec<2> x = placed.centre + placed.radius * Vec<2>{c * X[0] - s * X[1], s * X[0] + c * X[1]};

@@ -18,10 +18,11 @@ using WideVectors = std::vector<Vec<2, Wide>>;
 /// read.
 struct GrainBatch {
   const Topology* topology = nullptr;
-  std::array<int, Wide::size> grain;  ///< index of the grain in each lane, -1 for none
-  Wide radius = 1.0;                  ///< R [m]
-  WideVectors position;               ///< (nodes) x_i [m]
-  WideVectors velocity;               ///< (nodes) v_i [m/s]
+  std::array<int, Wide::size> grain;      ///< index of the grain in each lane, -1 for none
+  Wide radius = 1.0;                      ///< R [m]
+  Vec<2, Wide> placed_along{{1.0, 0.0}};  ///< (cos, sin) of the angle of placement
+  WideVectors position;                   ///< (nodes) x_i [m]
+  WideVectors velocity;                   ///< (nodes) v_i [m/s]
   /// First grain among the lanes whose bits are set, -1 if none holds a grain.
   int grain_in(unsigned lanes) const {
     for (int lane = 0; lane < Wide::size; ++lane)
@@ -45,7 +46,7 @@ class SoftGrains {
  public:
   /// density rho [kg/m^3]. Grains of one topology share batches. Raises UsageError for radii or densities not
   /// positive.
-  SoftGrains(std::vector<GrainPlacement> grains, AnyLaw law, double density, bool mean_dilatation);
+  SoftGrains(std::vector<GrainPlacement> grains, AnyLaw law, double density);
 
   int size() const { return static_cast<int>(radius_.size()); }
   double radius(int grain) const { return radius_[grain]; }
@@ -84,8 +85,7 @@ class SoftGrains {
   double kinetic_energy() const;  ///< sum_i 1/2 m_i v_i^2 [J/m]
 
   AnyLaw law;
-  double density = 0;            ///< rho [kg/m^3]
-  bool mean_dilatation = false;  ///< one J per cell, against volumetric locking from nu = 0.49 on
+  double density = 0;  ///< rho [kg/m^3]
   std::vector<GrainBatch> batches;
 
  private:

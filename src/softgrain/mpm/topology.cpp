@@ -23,7 +23,10 @@ CellShape shape_of(std::span<const MaterialPoint, 4> points) {
   };
   CellShape shape{
       .L_11 = L(1, 1), .L_12 = L(1, 2), .L_13 = L(1, 3), .L_22 = L(2, 2), .L_23 = L(2, 3), .L_33 = L(3, 3)};
-  for (std::size_t p = 0; p < 4; ++p) shape.inverse_area[p] = 1 / (4 * points[p].volume);
+  double volume = 0;
+  for (std::size_t p = 0; p < 4; ++p)
+    shape.inverse_area[p] = 1 / (4 * points[p].volume), volume += points[p].volume;
+  shape.inverse_volume = 1 / volume;
   return shape;
 }
 

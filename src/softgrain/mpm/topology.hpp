@@ -18,6 +18,7 @@ struct CellBlock {
 struct CellShape {
   double L_11 = 0, L_12 = 0, L_13 = 0, L_22 = 0, L_23 = 0, L_33 = 0;
   std::array<double, 4> inverse_area{};  ///< 1/(4 V_p) [1/R^2] of its points
+  double inverse_volume = 0;             ///< 1/sum_p V_p [1/R^2]
 };
 
 /// All that grains of one shape share, in units of their radius: made once, never changed.

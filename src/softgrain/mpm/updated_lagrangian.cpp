@@ -92,7 +92,7 @@ void UpdatedLagrangianDynamics::add_internal_impulse(const Law& material, double
   for (int g = 0; g < static_cast<int>(grains.size()); ++g) {
     const PointGrain& grain = grains[g];
     for (int p = 0; p < grain.points(); ++p) {
-      if (!admissible(material, grain.F[p]))
+      if (!admissible(grain.F[p]))
         throw NumericalError(
             fmt::format("a material point of grain {} is turned inside out; use a smaller time step", g));
       const double m = density * grain.volume[p];

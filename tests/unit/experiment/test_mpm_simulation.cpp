@@ -71,6 +71,24 @@ TEST_CASE("a packing that goes on from a checkpoint has the bits of one that nev
   }
 }
 
+TEST_CASE(
+    "no grain is loaded by its own placement: energy 0 at the start, for every law, loading and integrator") {
+  for (const LawChoice& law : law_choices())
+    for (const char* integrator : {"implicit", "explicit"})
+      for (const char* loading : {"diametral", "compaction", "isotropic"}) {
+        CAPTURE(law.name);
+        CAPTURE(integrator);
+        CAPTURE(loading);
+        Case c = small_packing(integrator);
+        c.experiment.loading = loading;
+        c.mpm.law = law.name;
+        const auto row = create_mpm_simulation(c)->observe();
+        const double unit = c.mpm.young_modulus * c.grain.radius * c.grain.radius;
+        CHECK(std::abs(value_of(row, "elastic_energy")) < 1e-12 * unit);
+        CHECK(value_of(row, "least_J") == doctest::Approx(1).epsilon(1e-12));
+      }
+}
+
 TEST_CASE("a packing keeps its grains' mass, and its lid ends at the strain asked for") {
   const auto simulation = create_mpm_simulation(small_packing("implicit"));
   const auto start = simulation->observe();

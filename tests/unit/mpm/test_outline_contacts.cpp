@@ -18,7 +18,7 @@ namespace {
 /// Two disks, the second finer, deformed and overlapping by about 2 %.
 SoftGrains overlapping_pair(double distance = 1.96) {
   SoftGrains grains({test::placed(test::disk(3), 1, {0, 0}), test::placed(test::disk(5), 1, {distance, 0.1})},
-                    make_law("neo_hookean", 1, 0.3), 1, false);
+                    make_law("neo_hookean", 1, 0.3), 1);
   for (GrainBatch& batch : grains.batches)
     for (Vec<2, Wide>& x : batch.position) x[1] += 0.03 * x[0] * x[0];
   return grains;
@@ -105,7 +105,7 @@ TEST_CASE("on outlines with short and long segments and sharp bends, too, vertic
   int met = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     SoftGrains grains({test::placed(test::disk(4), 1, {0, 0}), test::placed(test::disk(4), 1, {2, 0.1})},
-                      make_law("neo_hookean", 1, 0.3), 1, false);
+                      make_law("neo_hookean", 1, 0.3), 1);
     test::shake(grains, 0.15, seed);  // a segment is 0.4 long
     const OutlineState state = state_of(grains);
     for (const OutlineContact& c : OutlineNeighbours().detect(grains, state)) {
@@ -125,7 +125,7 @@ TEST_CASE("the contacts of many grains are those of each pair of them") {
   for (int g = 0; g < 16; ++g)
     placed.push_back(test::placed(test::disk(6), 1, {1.97 * (g % 4), 1.97 * (g / 4)}, {}, 0.1 * g));
   const auto detect = [&](std::vector<GrainPlacement> some) {
-    const SoftGrains grains(std::move(some), make_law("neo_hookean", 1, 0.3), 1, false);
+    const SoftGrains grains(std::move(some), make_law("neo_hookean", 1, 0.3), 1);
     return OutlineNeighbours().detect(grains, state_of(grains));
   };
   using Pair = std::array<int, 2>;                      // the slave's and the master's grain
@@ -143,7 +143,7 @@ TEST_CASE("the contacts of many grains are those of each pair of them") {
 TEST_CASE("a grain that rolls round another finds the same contacts as a search from the beginning") {
   const std::vector<GrainPlacement> placed{test::placed(test::disk(3), 1, {0, 0}),
                                            test::placed(test::disk(5), 1, {1.99, 0})};
-  const SoftGrains grains(placed, make_law("hencky", 1, 0.3), 1, false);
+  const SoftGrains grains(placed, make_law("hencky", 1, 0.3), 1);
   OutlineNeighbours neighbours;
   const OutlineState state = state_of(grains);
   for (int step = 0; step < 20; ++step) {
@@ -207,7 +207,7 @@ TEST_CASE("the curve passes through its vertices and keeps its direction there")
 }
 
 TEST_CASE("vertices meet walls by their distance, and slip by their path less the wall's") {
-  const SoftGrains grains({test::placed(test::disk(4), 1, {0, 0})}, make_law("hencky", 1, 0.3), 1, false);
+  const SoftGrains grains({test::placed(test::disk(4), 1, {0, 0})}, make_law("hencky", 1, 0.3), 1);
   Wall<2> wall = test::floor_at(-0.95);
   wall.velocity = {0.01, 0};
   OutlineState state = state_of(grains, {wall});
@@ -243,7 +243,7 @@ TEST_CASE("impulses are carried by vertex and by wall or master grain, not by pl
   const auto shape = test::disk(4);
   const SoftGrains grains(
       {test::placed(shape, 1, {0, 0}), test::placed(shape, 1, {2, 0}), test::placed(shape, 1, {4, 0})},
-      make_law("hencky", 1, 0.3), 1, false);
+      make_law("hencky", 1, 0.3), 1);
   const auto against = [](int vertex, int master) {
     return OutlineContact{.vertex = vertex, .master = {master, master, master, master}, .normal = {}};
   };
