@@ -26,7 +26,8 @@ struct BenchCase {
 
 const std::array<BenchCase, 3> bench_cases{
     {{"bonded grains (BPM), 12 of 60 primaries",
-      {"experiment.model=bpm", "bpm.primaries=60", "loading.max_strain=0.3", "loading.max_stress=2 MPa"},
+      {"experiment.model=bpm", "bpm.primaries=60", "time.step=0.25 us", "loading.max_strain=0.3",
+       "loading.max_stress=2 MPa"},
       0.14},
      {"elastic grains (MPM), implicit, 12 of 896 points",
       {"experiment.model=mpm", "mpm.cells=8", "mpm.time_step=5 us", "loading.max_packing_fraction=0.98"},

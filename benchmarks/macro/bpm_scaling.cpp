@@ -22,7 +22,7 @@ struct Cost {
 /// moves as far in units of its diameter.
 Cost cost_of(int primaries) {
   Case paper;
-  paper.time.step *= std::sqrt(static_cast<double>(paper.bpm.primaries) / primaries);
+  paper.time.step = 0.25e-6 * std::sqrt(static_cast<double>(paper.bpm.primaries) / primaries);
   paper.bpm.primaries = primaries;
   const double start = cpu_seconds();
   BpmCompression simulation(paper);

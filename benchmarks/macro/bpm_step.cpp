@@ -93,7 +93,8 @@ StepParts time_parts(const BpmCompression& simulation, const Case& paper, const 
 
 int main(int argc, char** argv) {
   Results results("bpm_step", argc, argv);
-  const Case paper;
+  Case paper;
+  paper.time.step = 0.25e-6;
   BpmCompression simulation(paper);
   for (int k = 0; k < steps_before; ++k) simulation.step();
   const StepMeans mean = run_steps(simulation);

@@ -24,7 +24,8 @@ ProcessResult softgrain_program(std::vector<std::string> arguments, const std::s
 /// A run of a small aggregate, in `folder`/run.
 std::string small_run(const TemporaryDirectory& folder, const std::vector<std::string>& more = {}) {
   const std::string text =
-      "[bpm]\nprimaries = 50\n[loading]\nmax_strain = 0.02\nunload_at = []\n[output]\nsnapshots = 4\nvtk = "
+      "[time]\nstep = 0.25e-6\n[bpm]\nprimaries = 50\n[loading]\nmax_strain = 0.02\nunload_at = "
+      "[]\n[output]\nsnapshots = 4\nvtk = "
       "false\n";
   const std::string run = (folder.path() / "run").string();
   std::vector<std::string> words{"run", folder.file("case.toml", text), "-o", run};

@@ -18,7 +18,8 @@ using softgrain::test::TemporaryDirectory;
 namespace {
 
 constexpr auto small_case =
-    "[bpm]\nprimaries = 60\n[loading]\nmax_strain = 0.02\nunload_at = []\nwall_velocity = \"1 m/s\"\n"
+    "[time]\nstep = 0.25e-6\n[bpm]\nprimaries = 60\n[loading]\nmax_strain = 0.02\nunload_at = "
+    "[]\nwall_velocity = \"1 m/s\"\n"
     "[output]\nsamples = 20\nsnapshots = 5\n";
 
 std::vector<std::string> command(const std::vector<std::string>& words) {

@@ -18,7 +18,8 @@ using softgrain::test::TemporaryDirectory;
 namespace {
 
 constexpr auto tiny_case =
-    "[bpm]\nprimaries = 20\n[loading]\nmax_strain = 0.01\nunload_at = []\nwall_velocity = \"2 m/s\"\n"
+    "[time]\nstep = 0.25e-6\n[bpm]\nprimaries = 20\n[loading]\nmax_strain = 0.01\nunload_at = "
+    "[]\nwall_velocity = \"2 m/s\"\n"
     "[output]\nsamples = 5\nsnapshots = 1\nreport = false\n";
 
 /// `softgrain sweep case.toml --vary sample.seed=1..3 -o out` and more words.

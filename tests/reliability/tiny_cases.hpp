@@ -36,7 +36,7 @@ inline Words tiny_settings(const std::string& name) {
   } else {
     add({"loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.1", "loading.unload_at=[0.06]",
          "loading.unload_by=0.03"});
-    if (!bonded) add({"mpm.time_step=\"20 us\""});
+    add(bonded ? Words{"time.step=\"0.25 us\""} : Words{"mpm.time_step=\"20 us\""});
   }
   return settings;
 }

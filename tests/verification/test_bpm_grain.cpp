@@ -79,6 +79,7 @@ TEST_CASE("a grain between plates yields at a fraction of its cohesive pressure,
   Case c;
   c.bpm.primaries = 300;
   c.loading = {.wall_velocity = 0.1, .max_strain = 0.065, .unload_at = {0.06}, .unload_by = 0.04};
+  c.time.step = 0.25e-6;
   BpmCompression simulation(c);
   double top = 0, bottom = 0, difference = 0, yield = 0, strain_of_release = 0;
   int rows = 0, yield_rows = 0;

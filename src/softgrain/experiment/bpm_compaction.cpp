@@ -67,7 +67,7 @@ void BpmCompaction::judge(const StepReport& report) {
   const double most = case_.loading.max_overlap;
   const bool close_packed =
       report.overlap_mean > close_packing_overlap && solid_fraction() > close_packing_fraction;
-  if (close_packed && solid_fraction() > fullest_fraction)
+  if (close_packed && !finished() && solid_fraction() > fullest_fraction)
     throw NumericalError(
         fmt::format("primaries fill {:.3f} of the box, more than fits: they have passed through each other "
                     "or the walls; use a "

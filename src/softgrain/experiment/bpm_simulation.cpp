@@ -82,6 +82,7 @@ double BpmSimulation::plate_distance() const {
 
 StepReport BpmSimulation::step() {
   const double dt = case_.time.step;
+  const bool over = finished();  // whoever goes on then has been told why
   const double approach = drive_.approach_speed(step_, height_start_ - plate_distance());
   for (int w = 0; w < static_cast<int>(dynamics_.particles.walls.size()); ++w)
     set_wall_velocity(dynamics_.particles, w, drive_.velocity(dynamics_.particles.walls[w], w, approach));
@@ -103,7 +104,7 @@ StepReport BpmSimulation::step() {
   sums_.dissipation -= dynamics_.work.contact + dynamics_.work.push_out;
   sums_.between -= dynamics_.work.between;
   sums_.friction -= dynamics_.work.friction;
-  refuse_overlaps(report);
+  if (!over) refuse_overlaps(report);
   judge(report);
   return report;
 }

@@ -34,7 +34,9 @@ std::vector<ContactPoint> contact_points(const SoftView& view) {
     const Vec<2>&before = x[begin + (v - begin + n - 1) % n], &after = x[begin + (v - begin + 1) % n];
     const bool wall = contact.wall >= 0;
     Vec<2> place = x[v];
-    if (wall) place += 0.5 * contact.share * (x[contact.master[2]] - x[contact.master[0]]);
+    if (wall)
+      place +=
+          0.5 * contact.share * (x[contact.master[2]] - x[contact.master[0]]) + contact.rise * contact.normal;
     points.push_back({.a = g,
                       .b = wall ? wall_index(contact.wall) : grains.grain_of_vertex(contact.master[0]),
                       .force = (-1 / view.impulse_time) * impulse_vector(contact, view.impulse[c]),

@@ -36,7 +36,7 @@ Case unusual_case() {
   Case c;
   c.grain.radius = 0.1 + 0.2;
   c.grain.density = 1.0 / 3;
-  c.bpm.attraction = 1e22;
+  c.bpm.attraction = 1e-22;
   c.bpm.primaries = 301;
   c.contact.friction = -0.0;
   c.contact.wall_friction = 5e-324;
