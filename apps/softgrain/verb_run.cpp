@@ -9,6 +9,7 @@
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/estimate.hpp"
+#include "softgrain/io/case_extension.hpp"
 #include "softgrain/io/case_file.hpp"
 #include "softgrain/io/case_text.hpp"
 #include "softgrain/io/report_page.hpp"
@@ -119,6 +120,17 @@ fs::path default_directory(const fs::path& case_file) {
   return case_file.parent_path() / (case_file.stem().string() + "_run");
 }
 
+void refuse_another_case(const RunRequest& request, const RunPaths& paths, const std::string& name) {
+  const std::string stored = read_file(paths.case_file());
+  if (stored == request.case_text) return;
+  const std::string why =
+      why_no_extension(parse_case(stored, paths.case_file().string()), request.the_case);
+  require(why.empty(),
+          "{} is not the case that {} was begun with: {}; `softgrain resume {}` goes on with the stored one, -o "
+          "begins another run",
+          name, paths.root.string(), why, paths.root.string());
+}
+
 void run_case(const RunArguments& arguments) {
   const CaseArguments& source = arguments.the_case;
   RunRequest request = request_of(arguments.options, arguments.resume);
@@ -132,9 +144,7 @@ void run_case(const RunArguments& arguments) {
   const bool going_on = arguments.resume && is_begun(paths);
   const bool has_case =
       going_on && fs::exists(paths.case_file());  // not when the disk was full from the beginning
-  require(!has_case || read_file(paths.case_file()) == request.case_text,
-          "{} is not the case that {} was begun with; `softgrain resume {}` goes on with the stored one",
-          source.path, paths.root.string(), paths.root.string());
+  if (has_case) refuse_another_case(request, paths, source.path);
   const bool keep = arguments.force || going_on;
   if (!keep) require_resources(estimate(request.the_case), available_resources(paths.root));
   const RunDirectory directory(paths.root,
@@ -167,7 +177,7 @@ void add_run_verb(CLI::App& app) {
                   "directory (default: CASE without .toml, with _run)")
       ->type_name("DIR");
   auto* resume =
-      run->add_flag("--resume", arguments->resume, "go on from the newest intact snapshot, if there is one");
+      run->add_flag("--resume", arguments->resume, "go on from the newest intact snapshot, if there is one; also to a later end");
   run->add_flag("--force", arguments->force,
                 "replace an earlier run's results; begin even where memory or disk seem too small")
       ->excludes(resume);
@@ -176,6 +186,7 @@ void add_run_verb(CLI::App& app) {
       "Examples:\n"
       "  softgrain run squeeze/case.toml                    into squeeze/case_run\n"
       "  softgrain run case.toml --set contact.friction=0.3 -o friction -j 4\n"
+      "  softgrain run case.toml -o out --resume --set loading.max_strain=0.5      a finished run goes further\n"
       "  softgrain run case.toml -o out --resume --stop-after \"23 h\"    in a queue: exit code 75 asks to "
       "come again\n"
       "\nCtrl-C: finish the step, write a snapshot, exit 130. SIGTERM, SIGUSR2, SIGHUP: the same, exit 75. "

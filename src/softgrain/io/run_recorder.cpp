@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/io/case_extension.hpp"
+#include "softgrain/io/case_file.hpp"
 
 namespace softgrain {
 
@@ -109,10 +111,26 @@ Snapshot RunRecorder::newest_intact_snapshot() {
       fmt::format("{}: none of {} snapshots is intact", paths_.snapshot_folder().string(), damaged.size()));
 }
 
+/// The last step before an end is cut to end there. A run that goes further begins before it, and so has the
+/// bits of one that had the later end from the start.
+void RunRecorder::drop_old_end() {
+  const auto files = list_snapshots(paths_);
+  if (files.size() < 2 || !fs::exists(paths_.run_file())) return;
+  const RunRecord before = read_run_record(paths_.run_file());
+  if (before.state == "done" && before.step == files.back().step) fs::remove(files.back().path);
+}
+
 RunReport RunRecorder::resume(Simulation& simulation) {
+  const bool same_case =
+      !fs::exists(paths_.case_file()) || read_file(paths_.case_file()) == request_.case_text;
+  if (!same_case) drop_old_end();
   const Snapshot snapshot = newest_intact_snapshot();
-  require(snapshot.case_text == request_.case_text, "{} is not the case that the run was begun with",
-          paths_.case_file().string());
+  if (snapshot.case_text != request_.case_text) {
+    const Case begun = parse_case(snapshot.case_text, last_snapshot_.string());
+    const std::string why = why_no_extension(begun, request_.the_case);
+    require(why.empty(), "{} is not the case that the run was begun with: {}", paths_.case_file().string(),
+            why);
+  }
   simulation.restore(snapshot.checkpoint);
   if (fs::exists(paths_.run_file())) {
     const RunRecord before = read_run_record(paths_.run_file());
@@ -132,7 +150,7 @@ RunReport RunRecorder::resume(Simulation& simulation) {
   log(fmt::format("resume at step {} from {}", snapshot.checkpoint.step, last_snapshot_.string()));
   frames_ = frames_before(snapshot.checkpoint.step, paths_);
   if (request_.the_case.output.vtk) fs::create_directories(paths_.vtk_folder());
-  if (!fs::exists(paths_.case_file())) write_file(paths_.case_file(), request_.case_text);
+  if (!same_case || !fs::exists(paths_.case_file())) write_file(paths_.case_file(), request_.case_text);
   save_scene(simulation, snapshot.scene);
   write_record(simulation);
   return snapshot.report;

@@ -40,7 +40,8 @@ class RunRecorder final : public Recorder {
   /// Writes the first state.
   void begin(Simulation& simulation);
   /// Restores the newest snapshot that is intact and returns the report up to it; says which ones it skipped
-  /// and why. Raises IoError when none is.
+  /// and why. A run that has ended goes further if the case is an extension (why_no_extension) of the one it was
+  /// begun with, from the snapshot before its end. Raises IoError when none is intact.
   RunReport resume(Simulation& simulation);
   bool after_step(Simulation& simulation, const StepReport& step, const RunReport& run) override;
 
@@ -56,6 +57,7 @@ class RunRecorder final : public Recorder {
  private:
   double wall_seconds() const;
   bool stop_wanted() const;
+  void drop_old_end();
   Snapshot newest_intact_snapshot();
   void write_row(Simulation& simulation);
   void save(const Simulation& simulation);

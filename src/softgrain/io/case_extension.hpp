@@ -1,0 +1,12 @@
+#pragma once
+#include <string>
+
+#include "softgrain/experiment/case.hpp"
+
+namespace softgrain {
+
+/// Why a run that was begun with one case cannot go on with another; "" if it can: only its end has moved further
+/// away (loading.max_strain, max_packing_fraction, max_stress), or its output is another.
+std::string why_no_extension(const Case& begun, const Case& wanted);
+
+}  // namespace softgrain
