@@ -9,6 +9,7 @@ class App;
 namespace softgrain {
 
 struct Case;
+struct CaseReading;
 
 /// Thrown by a verb's callback to end the program with an exit code of its own, without a message: 130 after
 /// SIGINT, 75 after SIGTERM (requeue me). Errors are exceptions of core/error.hpp; plain return is exit code
@@ -24,8 +25,8 @@ struct CaseArguments {
 };
 void add_case_arguments(CLI::App& verb, CaseArguments& arguments);
 
-/// What a user should know who runs a valid case: "note: ..."; "" for nothing.
-std::string caution_of(const Case& the_case);
+/// What a user should know who runs a valid case, each "note: ...": keys without effect, cautions of its law.
+std::vector<std::string> notes_of(const CaseReading& reading);
 
 // One verb each: adds a subcommand whose callback does the work after the whole command line has been parsed.
 // Results go to stdout, progress and log to stderr.

@@ -42,7 +42,7 @@ class RunRecorder final : public Recorder {
   /// Restores the newest snapshot that is intact and returns the report up to it; says which ones it skipped
   /// and why. Raises IoError when none is.
   RunReport resume(Simulation& simulation);
-  bool after_step(Simulation& simulation, const StepReport& step, const RunReport& run) override;
+  bool after_step(Simulation& simulation, const StepReport& step, RunReport& run) override;
 
   /// Ends the run as done, or as stopped before its end; returns the program's exit code.
   int end(const Simulation& simulation);
