@@ -153,7 +153,8 @@ int run_program(int argc, char** argv) {
       "  softgrain new squeeze                  writes squeeze/case.toml, commented\n"
       "  softgrain check squeeze/case.toml      what it would do and what it would cost\n"
       "\nExit codes: 0 done, 1 our bug, 2 usage or invalid case, 3 numerical failure, 4 input/output,\nor "
-      "memory.");
+      "memory, 5 done, but not to be trusted or short of what the case asks, 75 and 130 stopped by a "
+      "signal.");
   add_verbs(app);
   try {
     app.parse(argc, argv);

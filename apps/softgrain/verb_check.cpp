@@ -7,19 +7,24 @@
 #include <string>
 #include <string_view>
 
+#include "softgrain/experiment/advice.hpp"
+#include "softgrain/experiment/check_case.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/io/case_file.hpp"
 #include "softgrain/io/case_text.hpp"
 #include "softgrain/io/progress.hpp"
+#include "softgrain/io/scope.hpp"
 #include "softgrain/material/any_law.hpp"
 #include "verbs.hpp"
 
 namespace softgrain {
 
-std::string caution_of(const Case& the_case) {
-  if (the_case.experiment.model != "mpm") return "";
-  const std::string_view caution = law_choice(the_case.mpm.law).caution;
-  return caution.empty() ? "" : fmt::format("note: mpm.law: {}", caution);
+std::vector<std::string> notes_of(const CaseReading& reading) {
+  std::vector<std::string> notes = notes_on_effect(reading.the_case, reading.without_effect);
+  if (reading.the_case.experiment.model != "mpm") return notes;
+  const std::string_view caution = law_choice(reading.the_case.mpm.law).caution;
+  if (!caution.empty()) notes.push_back(fmt::format("note: mpm.law: {}", caution));
+  return notes;
 }
 
 namespace {
@@ -29,15 +34,27 @@ struct CheckOptions {
   bool json = false;
 };
 
-void print_json(const Case& the_case, const Estimate& estimate) {
-  const nlohmann::ordered_json result{{"case", nlohmann::ordered_json::parse(case_json(the_case))},
+/// A number where JSON has one: infinity is null.
+nlohmann::ordered_json finite(double number) {
+  return std::isfinite(number) ? nlohmann::ordered_json(number) : nlohmann::ordered_json(nullptr);
+}
+
+void print_json(const CaseReading& reading, const Estimate& estimate, const Advice& advice) {
+  const nlohmann::ordered_json result{{"case", nlohmann::ordered_json::parse(case_json(reading.the_case))},
                                       {"estimate",
                                        {{"particles", estimate.particles},
                                         {"contacts", estimate.contacts},
                                         {"steps", estimate.steps},
                                         {"memory_bytes", estimate.memory},
                                         {"disk_bytes", estimate.disk},
-                                        {"hours", estimate.hours}}}};
+                                        {"hours", estimate.hours}}},
+                                      {"advice",
+                                       {{"time_step", advice.time_step},
+                                        {"longest_step", finite(advice.longest_step)},
+                                        {"inertial_number", advice.inertial_number},
+                                        {"stress", advice.stress}}},
+                                      {"without_effect", reading.without_effect},
+                                      {"notes", notes_of(reading)}};
   fmt::print("{}\n", result.dump(2));
 }
 
@@ -54,14 +71,37 @@ void print_estimate(const Case& the_case, const Estimate& estimate) {
              duration_text(3600 * estimate.hours));
 }
 
+/// "below 1e-3, quasi-static".
+std::string_view word_for(double inertial_number) {
+  if (inertial_number < 1e-3) return "below 1e-3: quasi-static";
+  return inertial_number < 1e-1 ? "above 1e-3: inertia tells" : "above 0.1: a blow";
+}
+
+void print_advice(const Advice& advice) {
+  const auto text = [](double value, const char* unit) { return short_value({"", unit, value}); };
+  fmt::print(stderr, "time step {}", text(advice.time_step, "s"));
+  if (std::isfinite(advice.longest_step))
+    fmt::print(stderr, ", {:.2g} of the longest stable one", advice.time_step / advice.longest_step);
+  fmt::print(stderr, "\ninertial number about {:.1e} at {}, {}\n", advice.inertial_number,
+             text(advice.stress, "Pa"), word_for(advice.inertial_number));
+  if (advice.time_step > advice.longest_step)
+    fmt::print(stderr,
+               "warning: the time step is {:.2g} times the longest stable one, {}: take that, or less\n",
+               advice.time_step / advice.longest_step, text(advice.longest_step, "s"));
+}
+
 void check(const CheckOptions& options) {
-  const Case the_case = read_case(options.arguments.path, options.arguments.sets);
+  const CaseReading reading = read_case_with_notes(options.arguments.path, options.arguments.sets);
+  const Case& the_case = reading.the_case;
+  check_case(the_case);
   const Estimate cost = estimate(the_case);
-  if (options.json) return print_json(the_case, cost);
+  const Advice advice = advise(the_case);
+  if (options.json) return print_json(reading, cost, advice);
   fmt::print("{}", resolved_case_text(the_case));
   std::fflush(stdout);
   print_estimate(the_case, cost);
-  if (const std::string caution = caution_of(the_case); !caution.empty()) fmt::print(stderr, "{}\n", caution);
+  print_advice(advice);
+  for (const std::string& note : notes_of(reading)) fmt::print(stderr, "{}\n", note);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "softgrain/io/run_json.hpp"
 #include "softgrain/io/series_writer.hpp"
 #include "softgrain/io/snapshot.hpp"
+#include "softgrain/io/verdict.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 
@@ -116,11 +117,11 @@ std::string info_of_snapshot(const fs::path& path, bool as_json) {
   const Snapshot snapshot = read_snapshot(path);
   const Case the_case = parse_case(snapshot.case_text, path.string());
   const auto hash = Hdf5Reader(path).text_attribute("content_hash");
-  const auto verdict_text = verdict(snapshot.report, the_case.solver.tolerance);
+  const Verdict verdict = verdict_of(snapshot.report);
   if (as_json) {
     Json json{{"format", "softgrain-snapshot"},          {"step", snapshot.checkpoint.step},
               {"time", snapshot.checkpoint.time},        {"content_hash", hash},
-              {"wall_seconds", snapshot.wall_seconds},   {"verdict", verdict_text},
+              {"wall_seconds", snapshot.wall_seconds},   {"verdict", verdict.words},
               {"datasets", Hdf5Reader(path).datasets()}, {"case", snapshot.case_text}};
     return json.dump(2) + "\n";
   }
@@ -128,7 +129,7 @@ std::string info_of_snapshot(const fs::path& path, bool as_json) {
                  {{"case", summary(the_case)},
                   {"step", fmt::format("{}, time {}", grouped(snapshot.checkpoint.step),
                                        short_value({"time", "s", snapshot.checkpoint.time}))},
-                  {"verdict", verdict_text},
+                  {"verdict", verdict.words},
                   {"hash", hash}});
 }
 

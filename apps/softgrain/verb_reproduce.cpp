@@ -45,7 +45,9 @@ void add_reproduce_verb(CLI::App& app) {
   verb->footer(
       "Writes DIR/fig1.png .. fig4.png, pictures of the packings, the curves as CSV, verdicts.md and "
       "verdicts.json,\n"
-      "and the runs below DIR/runs. Called again, it goes on with the runs that are missing.\n\n"
+      "and the runs below DIR/runs. Called again, it goes on with the runs that are missing. Exit code 5: a "
+      "run "
+      "is not\nto be trusted.\n\n"
       "Examples:\n"
       "  softgrain reproduce all -o out/paper\n"
       "  softgrain reproduce fig3 --scale paper -o out/full --jobs 2\n"

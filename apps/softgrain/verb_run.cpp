@@ -7,6 +7,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
+#include "softgrain/experiment/check_case.hpp"
 #include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/io/case_extension.hpp"
@@ -16,6 +17,7 @@
 #include "softgrain/io/resources.hpp"
 #include "softgrain/io/run_recorder.hpp"
 #include "softgrain/io/units.hpp"
+#include "softgrain/io/verdict.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 
@@ -68,7 +70,7 @@ double seconds_of(const std::string& text) {
 
 /// What the user reads when the program is back, and what to do next.
 std::string closing_words(const RunRecord& record, const RunPaths& paths, bool has_page) {
-  const auto reached = verdict(record.report, record.tolerance);
+  const std::string reached = verdict_of(record.report, record.path).words;
   const std::string directory = paths.root.string();
   const auto page = has_page ? fmt::format("look at {} in a browser, or ", paths.report_file().string()) : "";
   const auto early =
@@ -89,7 +91,8 @@ RunRequest request_of(const RunOptions& options, bool resume) {
   return request;
 }
 
-void carry_out(const RunRequest& request, const RunDirectory& directory, const RunOptions& options) {
+void carry_out(const RunRequest& request, const RunDirectory& directory, const RunOptions& options,
+               const std::vector<std::string>& notes) {
   SignalWatch signals;
   if (options.threads > 0) set_threads(options.threads);
   const auto simulation = create_simulation(request.the_case);
@@ -99,14 +102,16 @@ void carry_out(const RunRequest& request, const RunDirectory& directory, const R
     if (!options.quiet) progress.message("results go to " + directory.paths().root.string());
     if (!options.quiet && !options.verbose && !directory.caution().empty())
       progress.message(directory.caution());
-    if (const std::string caution = caution_of(request.the_case); !caution.empty() && !options.quiet)
-      progress.message(caution);
+    if (!options.quiet)
+      for (const std::string& note : notes) progress.message(note);
     outcome = record_run(*simulation, directory, request, progress, signals);
   }
   const RunPaths& paths = directory.paths();
   const bool page = request.the_case.output.report && outcome.record.state == "done";
   if (page) write_report({paths.root}, paths.report_file());
   if (!options.quiet) print_result(closing_words(outcome.record, paths, page));
+  if (options.quiet && outcome.exit_code == exit_doubtful)
+    print_error(verdict_of(outcome.record.report, outcome.record.path).words);
   if (outcome.exit_code != 0) throw ExitCode{outcome.exit_code};
 }
 
@@ -134,7 +139,8 @@ void refuse_another_case(const RunRequest& request, const RunPaths& paths, const
 void run_case(const RunArguments& arguments) {
   const CaseArguments& source = arguments.the_case;
   RunRequest request = request_of(arguments.options, arguments.resume);
-  request.the_case = read_case(source.path, source.sets);
+  const CaseReading reading = read_case_with_notes(source.path, source.sets);
+  request.the_case = reading.the_case;
   request.case_text = resolved_case_text(request.the_case);
   const RunPaths paths{arguments.options.directory.empty() ? default_directory(source.path)
                                                            : fs::path(arguments.options.directory)};
@@ -145,11 +151,12 @@ void run_case(const RunArguments& arguments) {
   const bool has_case =
       going_on && fs::exists(paths.case_file());  // not when the disk was full from the beginning
   if (has_case) refuse_another_case(request, paths, source.path);
+  check_case(request.the_case);  // before a large sample is prepared, and before there is a directory
   const bool keep = arguments.force || going_on;
   if (!keep) require_resources(estimate(request.the_case), available_resources(paths.root));
   const RunDirectory directory(paths.root,
                                keep ? RunDirectory::IfNotEmpty::keep : RunDirectory::IfNotEmpty::refuse);
-  carry_out(request, directory, arguments.options);
+  carry_out(request, directory, arguments.options, notes_of(reading));
 }
 
 void resume_run(const RunOptions& options) {
@@ -164,7 +171,7 @@ void resume_run(const RunOptions& options) {
   const RunDirectory directory(paths.root, RunDirectory::IfNotEmpty::keep);
   request.the_case = read_case(paths.case_file().string());
   request.case_text = read_file(paths.case_file());
-  carry_out(request, directory, options);
+  carry_out(request, directory, options, notes_of({request.the_case, {}}));
 }
 
 }  // namespace
@@ -191,7 +198,10 @@ void add_run_verb(CLI::App& app) {
       "come again\n"
       "\nCtrl-C: finish the step, write a snapshot, exit 130. SIGTERM, SIGUSR2, SIGHUP: the same, exit 75. "
       "SIGUSR1:\n"
-      "write a snapshot and go on.");
+      "write a snapshot and go on.\n"
+      "\nExit code 5: the run came to its end, but its verdict says not to trust it, or that it did not "
+      "reach "
+      "all\nthat the case asks.");
   run->callback([arguments] { run_case(*arguments); });
 
   auto* again = app.add_subcommand("resume", "Go on with a run that was stopped or killed");

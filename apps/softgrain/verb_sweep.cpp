@@ -71,7 +71,9 @@ void add_sweep_verb(CLI::App& app) {
       "2\n"
       "  softgrain sweep case.toml --vary sample.seed=1..100 -o seeds --slurm    then: sbatch "
       "seeds/array.sh\n"
-      "\nCalled again it does what is not done yet. A run that fails does not stop the others: exit code 3.\n"
+      "\nCalled again it does what is not done yet. A run that fails does not stop the others: exit code "
+      "3;\n5 if "
+      "all are done, but some not to be trusted.\n"
       "Needs Python with NumPy, for the figure Matplotlib and h5py: /usr/bin/python3, or what "
       "SOFTGRAIN_PYTHON names.");
   verb->callback([arguments] { become_python("sweep", words_of(*arguments)); });

@@ -9,6 +9,7 @@ class App;
 namespace softgrain {
 
 struct Case;
+struct CaseReading;
 
 /// Thrown by a verb's callback to end the program with an exit code of its own, without a message: 130 after
 /// SIGINT, 75 after SIGTERM (requeue me). Errors are exceptions of core/error.hpp; plain return is exit code
@@ -27,8 +28,8 @@ void add_case_arguments(CLI::App& verb, CaseArguments& arguments);
 /// A check of CLI11 for what is counted: "" for a whole number from 1 on, else what is wrong.
 std::string at_least_one(const std::string& word);
 
-/// What a user should know who runs a valid case: "note: ..."; "" for nothing.
-std::string caution_of(const Case& the_case);
+/// What a user should know who runs a valid case, each "note: ...": keys without effect, cautions of its law.
+std::vector<std::string> notes_of(const CaseReading& reading);
 
 // One verb each: adds a subcommand whose callback does the work after the whole command line has been parsed.
 // Results go to stdout, progress and log to stderr.

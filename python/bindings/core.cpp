@@ -63,7 +63,7 @@ class Watch final : public Recorder {
  public:
   explicit Watch(const Condition& go_on) : go_on_(go_on) {}
 
-  bool after_step(Simulation&, const StepReport& step, const RunReport&) override {
+  bool after_step(Simulation&, const StepReport& step, RunReport&) override {
     last = step;
     if (std::chrono::steady_clock::now() - looked_ > time_between_looks) look_for_signals();
     return go_on_();
@@ -200,6 +200,7 @@ PYBIND11_MODULE(_core, module) {
       .def_readonly("sweeps", &StepReport::sweeps)
       .def_readonly("residual_mean", &StepReport::residual_mean)
       .def_readonly("residual_max", &StepReport::residual_max)
+      .def_readonly("residual_limit", &StepReport::residual_limit)
       .def_readonly("overlap_mean", &StepReport::overlap_mean)
       .def_readonly("overlap_max", &StepReport::overlap_max)
       .def_readonly("converged", &StepReport::converged);

@@ -4,7 +4,7 @@ Needs NumPy and, for snapshots, h5py. `Simulation`, `Grain`, `set_threads` and `
 
 from typing import TYPE_CHECKING
 
-from .case import Case, CaseError, RunFailed, run_case
+from .case import Case, CaseError, DoubtfulRun, RunFailed, run_case
 from .run import NotARun, NotRecorded, Run, Snapshot, open_run
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ open = open_run  # softgrain.open reads well where it is used; here it hides the
 
 COMPILED = {"Simulation": "simulation", "Grain": "simulation", "set_threads": "_core", "threads": "_core"}
 
-__all__ = ["Case", "CaseError", "NotARun", "NotRecorded", "Run", "RunFailed", "Snapshot", "open", "run_case"]
+__all__ = ["Case", "CaseError", "DoubtfulRun", "NotARun", "NotRecorded", "Run", "RunFailed", "Snapshot", "open", "run_case"]
 
 
 def __getattr__(name):

@@ -4,11 +4,14 @@ import json
 import os
 import subprocess
 import tomllib
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from .run import Run, html_table, open_run
+
+DOUBTFUL = 5  # the program's exit code
 
 
 class CaseError(ValueError):
@@ -21,6 +24,10 @@ class RunFailed(RuntimeError):
     def __init__(self, message: str, code: int):
         super().__init__(message)
         self.code = code
+
+
+class DoubtfulRun(UserWarning):
+    """The run is done, but not to be trusted, or did not reach all that its case asks: `run.doubts`."""
 
 
 @dataclass(frozen=True)
@@ -56,12 +63,18 @@ class Case:
 
 
 def run_case(case: Case | str | Path, directory: str | Path, threads: int | None = None, resume: bool = False) -> Run:
-    """Carries out the case in `directory` and opens it. Raises CaseError, RunFailed; Ctrl-C leaves a snapshot."""
+    """Carries out the case in `directory` and opens it; warns with DoubtfulRun of one that is not to be trusted.
+    Raises CaseError, RunFailed; Ctrl-C leaves a snapshot."""
     case = case if isinstance(case, Case) else Case(case)
     options = ["--resume"] if resume else []
     if threads is not None:
         options.append(f"--threads={threads}")
-    _call("run", *case._words(), "-o", str(directory), "--quiet", *options)
+    try:
+        _call("run", *case._words(), "-o", str(directory), "--quiet", *options)
+    except RunFailed as failure:
+        if failure.code != DOUBTFUL:
+            raise
+        warnings.warn(DoubtfulRun(str(failure)), stacklevel=2)
     return open_run(directory)
 
 

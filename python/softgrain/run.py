@@ -100,6 +100,11 @@ class Run:
         return json.loads(path.read_text()) if path.exists() else {}
 
     @property
+    def doubts(self) -> list[str]:
+        """Why a run that is done is not to be trusted, and what of its case it did not reach; [] if all is well."""
+        return self.info.get("doubts", [])
+
+    @property
     def series(self) -> dict[str, np.ndarray]:
         """Column name (without unit) -> array over the samples."""
         return self._table[0]

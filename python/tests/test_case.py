@@ -25,6 +25,9 @@ else:
     folder = pathlib.Path(words[words.index("-o") + 1])
     folder.mkdir()
     (folder / "case.toml").write_text("words = " + json.dumps(words))
+    if "--set=solver.max_sweeps=1" in words:
+        (folder / "run.json").write_text(json.dumps({{"state": "done", "doubts": ["an overlap of 0.1"]}}))
+        sys.exit((print("converged 0.0 %; DO NOT TRUST IT: an overlap of 0.1", file=sys.stderr), 5)[1])
 """
 
 
@@ -51,6 +54,12 @@ class Cases(unittest.TestCase):
         case = softgrain.Case("c").set("loading.unload_at", [0.1, 0.2]).set("time.step", "0.05 us")
         self.assertEqual(case.resolve()["words"][2:4],
                          ["--set=loading.unload_at=[0.1, 0.2]", "--set=time.step=0.05 us"])
+
+    def test_a_run_that_is_not_to_be_trusted_is_opened_with_a_warning_that_says_why(self):
+        case = softgrain.Case("c").set("solver.max_sweeps", 1)
+        with self.assertWarnsRegex(softgrain.DoubtfulRun, "DO NOT TRUST IT: an overlap"):
+            run = softgrain.run_case(case, self.folder / "out")
+        self.assertEqual(run.doubts, ["an overlap of 0.1"])
 
     def test_a_case_is_run_into_its_directory_and_opened(self):
         run = softgrain.run_case(softgrain.Case("c").set("sample.seed", 7), self.folder / "out", threads=2)

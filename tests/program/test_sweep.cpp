@@ -68,6 +68,24 @@ TEST_CASE("a run that cannot be made stops no other run of the sweep, and exit c
   CHECK(read_text(folder.path() / "out/runs/seed_1/thesis.txt") == "not to be overwritten");
 }
 
+TEST_CASE(
+    "a run that is not to be trusted stops no other run of the sweep: exit code 5 and the table say so") {
+  const TemporaryDirectory folder;
+  // in single precision no step converges to 1e-12
+  const std::vector<std::string> unsolved{"--vary", "solver.tolerance=1e-12,1e-5"};
+  const auto swept = sweep(folder, unsolved);
+  CHECK(swept.exit_code == 5);
+  CHECK(swept.err.find("3 of 6 runs are doubtful") != std::string::npos);
+  int doubtful = 0, done = 0;
+  for (const std::string& line : lines_of(folder.path() / "out" / "results.csv")) {
+    doubtful += line.find(",doubtful,") != std::string::npos ? 1 : 0;
+    done += line.find(",done,") != std::string::npos ? 1 : 0;
+  }
+  CHECK(doubtful == 3);
+  CHECK(done == 3);
+  CHECK(sweep(folder, unsolved).exit_code == 5);  // all done before
+}
+
 TEST_CASE("a sweep called again does nothing twice, and one of its runs can be made by its number") {
   const TemporaryDirectory folder;
   REQUIRE(sweep(folder, {"--index", "1"}).exit_code == 0);

@@ -45,8 +45,8 @@ class BouncingBall : public Simulation {
             .sweeps = sweeps,
             .residual_mean = residual,
             .residual_max = 2 * residual,
-            .overlap_mean = std::fabs(height_) / 7,
-            .overlap_max = std::fabs(height_),
+            .overlap_mean = 1e-3 * std::fabs(height_) / 7,
+            .overlap_max = 1e-3 * std::fabs(height_),
             .converged = step_ % 50 != 0};
   }
 

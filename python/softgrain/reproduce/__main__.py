@@ -7,6 +7,7 @@ from pathlib import Path
 
 from .. import NotRecorded, open_run
 from ..plot import save, style
+from ..sweep.execute import DOUBTFUL, doubts
 from . import figures, tables, verdicts
 from .execute import RunFailed, execute
 from .plan import FIGURES, FRICTIONS, MODELS, SCALES, packing_name, planned_runs
@@ -52,13 +53,13 @@ def reproduce(options):
     found = list(verdicts.verdicts(results, wanted))
     verdicts.write(found, results, options.output, options.scale,
                    f"softgrain {program.get('version', '?')} ({program.get('commit', '?')})")
-    return paths, found
+    return paths, found, [run.name for run in runs if doubts(folder / run.name)]
 
 
 def main(arguments=None):
     options = parse(arguments)
     try:
-        paths, found = reproduce(options)
+        paths, found, doubtful = reproduce(options)
     except RunFailed as error:
         print(f"error: {error}", file=sys.stderr)
         return error.code
@@ -71,7 +72,9 @@ def main(arguments=None):
     agree = sum(verdict.agrees for verdict in found)
     print(*paths, options.output / "verdicts.md", sep="\n")
     print(f"{agree} of {len(found)} statements agree", file=sys.stderr)
-    return 0
+    if doubtful:
+        print(f"warning: doubtful runs, `softgrain info` tells why: {', '.join(doubtful)}", file=sys.stderr)
+    return DOUBTFUL if doubtful else 0
 
 
 if __name__ == "__main__":

@@ -42,7 +42,7 @@ def become_run(plan, index):
         raise PlanError(f"--index {index}: the runs are numbered from 0 to {len(runs) - 1}")
     if not execute.select_undone(plan, [runs[index]], 1):
         print(f"{runs[index].name}: done before", file=sys.stderr)
-        return 0
+        return execute.DOUBTFUL if execute.doubts(plan.directory(runs[index])) else 0
     plan.directory(runs[index]).parent.mkdir(parents=True, exist_ok=True)
     words = plan.run_command(runs[index], "--progress=plain")
     os.execvp(words[0], words)
@@ -68,7 +68,11 @@ def sweep(plan, jobs, columns):
     collect(plan, columns)
     if failed:
         print(f"error: {len(failed)} of {len(plan.runs)} runs failed: {', '.join(failed)}", file=sys.stderr)
-    return pool.stop_code or (RUNS_FAILED if failed else 0)
+    doubtful = [run.name for run in plan.runs if execute.doubts(plan.directory(run))]
+    if doubtful:
+        print(f"warning: {len(doubtful)} of {len(plan.runs)} runs are doubtful, `softgrain info` tells why: "
+              f"{', '.join(doubtful)}", file=sys.stderr)
+    return pool.stop_code or (RUNS_FAILED if failed else execute.DOUBTFUL if doubtful else 0)
 
 
 def collect(plan, columns):

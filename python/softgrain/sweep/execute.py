@@ -11,6 +11,7 @@ import tomllib
 from concurrent.futures import ThreadPoolExecutor
 
 STOPPED, COME_AGAIN = 130, 75  # exit codes after Ctrl-C and after SIGTERM, those of `softgrain run`
+DOUBTFUL = 5  # done, but not to be trusted, or short of what the case asks: no failure of the sweep
 STOP_SIGNALS = {signal.SIGINT: STOPPED, signal.SIGTERM: COME_AGAIN, signal.SIGUSR2: COME_AGAIN,
                 signal.SIGHUP: COME_AGAIN}
 POLL = 0.02  # [s]
@@ -49,6 +50,14 @@ def _is_done(plan, run):
     if tomllib.loads((directory / "case.toml").read_text()) != json.loads(checked.stdout)["case"]:
         raise RefusedCase(f"{directory} holds a run of another case; choose another directory with -o")
     return True
+
+
+def doubts(directory):
+    """Why the run is not to be trusted, or what it did not reach; [] for a good run, and before it is done."""
+    try:
+        return json.loads((directory / "run.json").read_text()).get("doubts", []) if state(directory) == "done" else []
+    except (OSError, ValueError):
+        return []
 
 
 class Pool:
@@ -97,11 +106,12 @@ class Pool:
                 said.seek(0)
                 words = said.read().strip()
             done = f"done in {time.monotonic() - began:.0f} s"
-            ended = {0: done, STOPPED: "stopped", COME_AGAIN: "stopped"}.get(code, f"failed ({code}): {words}")
+            ended = {0: done, DOUBTFUL: f"{done}, doubtful: {words}", STOPPED: "stopped",
+                     COME_AGAIN: "stopped"}.get(code, f"failed ({code}): {words}")
             print(f"{name}: {ended}", file=sys.stderr, flush=True)
             if ended.startswith("failed"):
                 failed[name] = code, words
-            elif code != 0 and not self.stop_code:
+            elif code not in (0, DOUBTFUL) and not self.stop_code:
                 self.stop_code = code  # someone else sent it the signal
         return failed
 

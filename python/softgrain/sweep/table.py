@@ -5,7 +5,7 @@ import csv
 import numpy as np
 
 from ..run import open_run
-from .execute import state
+from .execute import doubts, state
 
 USUAL_COLUMNS = ("strain", "phi_0", "phi", "z", "z_no_rattlers", "stress_top", "stress_bottom", "stress_xx",
                  "stress_yy", "dissipation", "energy_error", "residual_max", "overlap_max", "wall_seconds")
@@ -17,19 +17,23 @@ def read_runs(plan):
 
 
 def write_results(plan, opened, columns, path):
-    """results.csv: name, state and varied values of each run (SI), then last value and maximum of each column."""
+    """results.csv: name, state ("doubtful" for a run that is done, but not to be trusted) and varied values of each run (SI), then last value and maximum of each column."""
     columns = columns or [name for name in USUAL_COLUMNS if any(name in run.series for run in opened.values())]
     units = {name: unit for run in opened.values() for name, unit in run.units.items()}
     header = ["run", "state", *plan.varied]
     for name in columns:
         unit = f"[{units[name]}]" if units.get(name) else ""
         header += [f"{name}_last{unit}", f"{name}_max{unit}"]
-    rows = [[run.name, state(plan.directory(run)) or "to do", *_values(run, opened.get(run.name)),
+    rows = [[run.name, _state(plan.directory(run)), *_values(run, opened.get(run.name)),
              *_ends(opened.get(run.name), columns)] for run in plan.runs]
     temporary = path.with_name(path.name + ".tmp")
     with temporary.open("w", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows([header, *rows])
     temporary.replace(path)
+
+
+def _state(directory):
+    return "doubtful" if doubts(directory) else state(directory) or "to do"
 
 
 def value_of(run, key):

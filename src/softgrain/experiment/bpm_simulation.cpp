@@ -87,12 +87,13 @@ StepReport BpmSimulation::step() {
   for (int w = 0; w < static_cast<int>(dynamics_.particles.walls.size()); ++w)
     set_wall_velocity(dynamics_.particles, w, drive_.velocity(dynamics_.particles.walls[w], w, approach));
   dynamics_.options.solver.max_sweeps = case_.solver.max_sweeps * (step_ == 0 ? first_step_factor : 1);
-  const StepReport report = dynamics_.step(
+  StepReport report = dynamics_.step(
       [&](const RigidParticles<2>& particles, std::span<Vec<2>> force) {
         attraction_.update(particles, dynamics_.reference);
         attraction_.add_forces(particles, force);
       },
       dt);
+  report.residual_limit = dynamics_.options.solver.worst_factor * dynamics_.options.solver.tolerance;
   ++step_;
   const auto& walls = dynamics_.particles.walls;
   for (std::size_t w = 0; w < walls.size(); ++w) {

@@ -18,11 +18,16 @@ double smallest_radius(const Case& c) {
   return is_diametral(c) ? c.grain.radius : c.sample.smallest_diameter / 2;
 }
 
+/// Of all grains, undeformed, in the mean [m^2].
+double grain_area(const Case& c) {
+  if (is_diametral(c)) return std::numbers::pi * c.grain.radius * c.grain.radius;
+  const double a = c.sample.smallest_diameter, b = c.sample.largest_diameter;
+  return c.sample.grains * std::numbers::pi / 12 * (a * a + a * b + b * b);
+}
+
 /// Travel of the plate, there and back [m].
 double travel(const Case& c) {
-  const double mean_diameter = (c.sample.smallest_diameter + c.sample.largest_diameter) / 2;
-  const double grain_area = std::numbers::pi / 4 * mean_diameter * mean_diameter;
-  const double height = std::sqrt(grains(c) * grain_area / c.sample.packing_fraction / c.sample.aspect);
+  const double height = box_height(c);
   const auto travel_to = [&](double strain) {
     return is_diametral(c) ? plate_travel(strain, c.grain.radius) : -height * std::expm1(-strain);
   };
@@ -49,7 +54,13 @@ double primaries(const Case& c) {
   return grains(c) * c.bpm.primaries * (1 + ratio + ratio * ratio) / 3;
 }
 
-double time_step(const Case& c) {
+}  // namespace
+
+double box_height(const Case& c) {
+  return std::sqrt(grain_area(c) / c.sample.packing_fraction / c.sample.aspect);
+}
+
+double first_time_step(const Case& c) {
   if (c.experiment.model == "bpm") return c.time.step > 0 ? c.time.step : stable_bond_step(c);
   if (c.mpm.time_step > 0) return c.mpm.time_step;
   if (is_implicit(c)) return 0.01 * smallest_radius(c) / c.loading.wall_velocity;
@@ -59,6 +70,8 @@ double time_step(const Case& c) {
   const double cell = smallest_radius(c) * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;
   return (is_updated_lagrangian(c) ? 0.2 : 0.26) * cell / std::sqrt(modulus / c.grain.density);
 }
+
+namespace {
 
 /// CPU time of a step [s], as measured on one core of a server of 2024 (docs/performance.md).
 double seconds_of_step(const Case& c, const Estimate& e) {
@@ -72,14 +85,38 @@ double seconds_of_step(const Case& c, const Estimate& e) {
   return batches * 8 * e.particles / grains(c) * (is_implicit(c) ? 2.7e-7 : 5.5e-9);
 }
 
-/// Snapshots and ParaView's files of a whole run [bytes], as measured by primary and by material point.
-double disk(const Case& c, double particles) {
-  const double frames = c.output.snapshots + 1 + 2 * static_cast<double>(c.loading.unload_at.size());
-  const double bytes_of_particle = (c.experiment.model == "bpm" ? 280 : 150) + (c.output.vtk ? 75 : 0);
-  return frames * (20e3 + bytes_of_particle * particles);
+/// CPU time of all rows of series.csv [s]: in a box each looks at every grain, whose outline must be found if
+/// it is bonded.
+double seconds_of_rows(const Case& c, const Estimate& e) {
+  if (is_diametral(c)) return 0;
+  return std::min<double>(c.output.samples, e.steps) * grains(c) *
+         (c.experiment.model == "bpm" ? 75e-6 : 17e-6);
+}
+
+/// Snapshots and ParaView's files of a whole run [bytes], as measured by primary, by bonded grain (outlines)
+/// and by material point. A step writes one snapshot at most.
+double disk(const Case& c, const Estimate& e) {
+  const bool bpm = c.experiment.model == "bpm";
+  const double frames =
+      std::min<double>(c.output.snapshots, e.steps) + 1 + 2 * static_cast<double>(c.loading.unload_at.size());
+  const double bytes_of_particle = (bpm ? 280 : 150) + (c.output.vtk ? 75 : 0);
+  return frames * (20e3 + bytes_of_particle * e.particles + (bpm ? 900 * grains(c) : 0));
+}
+
+/// Peak of a whole run [bytes], as measured: the program, its state, and a snapshot while it is written. A
+/// batch of 8 elastic grains takes the same when it is not full.
+double memory(const Case& c, const Estimate& e) {
+  constexpr double program = 35e6;
+  if (c.experiment.model == "bpm") return program + 2300 * e.particles + 7000 * grains(c);
+  const double in_batches = std::ceil(grains(c) / 8) * 8 * e.particles / grains(c);
+  return program + 550 * e.particles + 350 * in_batches;
 }
 
 }  // namespace
+
+double energy_at_wall_speed(const Case& c) {
+  return c.grain.density * grain_area(c) * c.loading.wall_velocity * c.loading.wall_velocity / 2;
+}
 
 Estimate estimate(const Case& the_case) {
   constexpr double second = 1.0 / 3600;  // [h]
@@ -88,11 +125,12 @@ Estimate estimate(const Case& the_case) {
   Estimate result;
   result.particles = bpm ? primaries(the_case) : grains(the_case) * 14 * cells * cells;
   result.contacts = bpm ? 2.2 * result.particles : grains(the_case) * 3.3 * cells;
-  result.steps =
-      std::round((travel(the_case) / the_case.loading.wall_velocity + rest(the_case)) / time_step(the_case));
-  result.memory = 50e6 + 1000 * result.particles + 200 * result.contacts;
-  result.disk = disk(the_case, result.particles);
-  result.hours = result.steps * seconds_of_step(the_case, result) * second;
+  result.steps = std::round((travel(the_case) / the_case.loading.wall_velocity + rest(the_case)) /
+                            first_time_step(the_case));
+  result.memory = memory(the_case, result);
+  result.disk = disk(the_case, result);
+  result.hours =
+      (result.steps * seconds_of_step(the_case, result) + seconds_of_rows(the_case, result)) * second;
   return result;
 }
 

@@ -10,11 +10,20 @@ struct Estimate {
   double particles = 0;  ///< bpm: primary particles; mpm: material points, 14 cells^2 in a grain
   double contacts =
       0;  ///< bpm: 2.2 per primary, a dense packing has about 2; mpm: half of the outlines' vertices
-  double steps = 0;   ///< of the loading path; preparing the sample comes on top
-  double memory = 0;  ///< [bytes] 50 MB + 1 kB per particle + 200 B per contact
-  double disk = 0;    ///< [bytes] snapshots and ParaView's files
-  double hours = 0;   ///< [h] on one thread; bpm: with 17 sweeps a step, as usual
+  double steps = 0;  ///< of the loading path; preparing the sample comes on top
+  double memory =
+      0;             ///< [bytes] as measured: bpm 2.3 kB per primary and 7 kB per grain; mpm 0.9 kB per point
+  double disk = 0;   ///< [bytes] snapshots and ParaView's files
+  double hours = 0;  ///< [h] on one thread; bpm: with 17 sweeps a step, as usual
 };
+
+/// The time step with which a run of the case begins [s], and the height of its box [m], both for grains of
+/// mean size.
+double first_time_step(const Case& the_case);
+double box_height(const Case& the_case);
+
+/// Kinetic energy of all grains at the speed of the walls [J/m]: a floor for the energies of a run.
+double energy_at_wall_speed(const Case& the_case);
 
 /// Estimates a valid case.
 Estimate estimate(const Case& the_case);

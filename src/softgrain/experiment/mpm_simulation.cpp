@@ -37,6 +37,10 @@ int runaway_grain(const SoftGrains& grains, double dt) {
   return -1;
 }
 
+/// Of the last correction of Newton's method.
+double residual_limit(const ImplicitOptions& options) { return options.tolerance; }
+double residual_limit(const ExplicitOptions&) { return 0; }
+
 }  // namespace
 
 template <class Dynamics>
@@ -76,6 +80,7 @@ StepReport MpmSimulation<Dynamics>::step() {
           .sweeps = soft.sweeps,
           .residual_mean = soft.residual,
           .residual_max = soft.residual,
+          .residual_limit = residual_limit(dynamics_.options),
           .overlap_mean = 0,
           .overlap_max = soft.penetration_max,
           .converged = soft.converged};

@@ -30,7 +30,7 @@ class MpmSimulation final : public Simulation {
   std::int64_t steps_planned() const override { return drive_.steps_planned(); }
   bool at_turning_point() const override { return drive_.at_turning_point(step_); }
   std::string early_end() const override { return drive_.early_end(step_); }
-  PathOutcome outcome() const override { return drive_.outcome(step_); }
+  PathOutcome outcome() const override { return box() ? drive_.outcome(step_) : PathOutcome{}; }
   void follow(PlateMotion motion) override { drive_.follow(std::move(motion)); }
   StepReport step() override;
   SolvedContactProblem step_and_catch_problem() override;

@@ -1,6 +1,7 @@
 #include "softgrain/experiment/run.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "softgrain/core/error.hpp"
 
@@ -17,14 +18,29 @@ StepReport advance(Simulation& simulation) {
   }
 }
 
+/// What is no number stays.
+double worse(double worst, double now) { return now <= worst || std::isnan(worst) ? worst : now; }
+
 }  // namespace
+
+void EnergyBalance::add(const std::vector<Quantity>& row) {
+  for (const Quantity& quantity : row) {
+    const std::string& name = quantity.name;
+    if (name == "energy_error") error = worse(error, std::abs(quantity.value));
+    if (name == "dissipation") error = worse(error, -quantity.value);
+    if (name == "wall_work" || name == "kinetic_energy" || name == "elastic_energy" ||
+        name == "attraction_energy")
+      scale = std::max(scale, std::abs(quantity.value));
+  }
+}
 
 void RunReport::add(const StepReport& step) {
   ++steps;
   steps_converged += step.converged ? 1 : 0;
   sweeps += step.sweeps;
-  residual_max = std::max(residual_max, step.residual_max);
-  overlap_max = std::max(overlap_max, step.overlap_max);
+  residual_max = worse(residual_max, step.residual_max);
+  residual_limit = std::max(residual_limit, step.residual_limit);
+  overlap_max = worse(overlap_max, step.overlap_max);
 }
 
 RunReport run(Simulation& simulation, Recorder& recorder, RunReport report) {

@@ -37,15 +37,26 @@ class CaseReader {
   CaseReader(std::string_view text, const std::string& name, const std::vector<std::string>& sets)
       : text_(text), name_(name), sets_(sets) {}
 
-  Case read() {
+  CaseReading read() {
     read_file_text();
     for (std::size_t i = 0; i < sets_.size(); ++i) read_set(static_cast<int>(i));
     check_relations();
     if (!issues_.empty()) throw CaseFileError(report());
-    return case_;
+    return {case_, without_effect()};
   }
 
  private:
+  /// A default that the file repeats is no wish: `softgrain new` and resolved cases write every key.
+  std::vector<std::string> without_effect() {
+    std::vector<std::string> names;
+    for (const Key& key : case_keys()) {
+      const auto given = origins_.find(key.name);
+      if (given == origins_.end() || key.acts.covers(case_)) continue;
+      if (given->second.set >= 0 || si_value(case_, key) != si_value(Case{}, key)) names.push_back(key.name);
+    }
+    return names;
+  }
+
   /// A line that is no TOML is reported and left out, so that one slip of the pen does not hide the other
   /// errors.
   void read_file_text() {
@@ -222,7 +233,16 @@ std::string read_case_text(const std::string& path) {
 }  // namespace
 
 Case parse_case(std::string_view text, const std::string& name, const std::vector<std::string>& sets) {
+  return CaseReader(text, name, sets).read().the_case;
+}
+
+CaseReading parse_case_with_notes(std::string_view text, const std::string& name,
+                                  const std::vector<std::string>& sets) {
   return CaseReader(text, name, sets).read();
+}
+
+CaseReading read_case_with_notes(const std::string& path, const std::vector<std::string>& sets) {
+  return parse_case_with_notes(read_case_text(path), path, sets);
 }
 
 Case read_case(const std::string& path, const std::vector<std::string>& sets) {

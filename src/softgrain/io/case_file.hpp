@@ -19,7 +19,18 @@ struct CaseFileError : UsageError {
 /// UsageError when the file cannot be read, and CaseFileError with all errors sorted by line and column.
 Case read_case(const std::string& path, const std::vector<std::string>& sets = {});
 
+/// A case, and what it gives in vain.
+struct CaseReading {
+  Case the_case;
+  /// Full names of the keys that do nothing in this case although they were given: by an override, or in the
+  /// file with another value than the default; in the order of the schema.
+  std::vector<std::string> without_effect;
+};
+CaseReading read_case_with_notes(const std::string& path, const std::vector<std::string>& sets = {});
+
 /// The same from text; `name` stands for the file in messages.
 Case parse_case(std::string_view text, const std::string& name, const std::vector<std::string>& sets = {});
+CaseReading parse_case_with_notes(std::string_view text, const std::string& name,
+                                  const std::vector<std::string>& sets = {});
 
 }  // namespace softgrain

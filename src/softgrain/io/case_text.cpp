@@ -73,7 +73,8 @@ Case compaction(const std::string& model) {
   c.sample.grains = 300;
   c.loading.wall_velocity = 5;
   c.loading.max_strain = model == "mpm" ? 0.3 : 0.42;
-  if (model == "bpm") c.loading.max_stress = 5e6;  // ten times the cohesive pressure: close packed
+  if (model == "mpm") return c;
+  c.loading.max_stress = 5e6;  // ten times the cohesive pressure: close packed
   c.bpm.primaries = 200;
   c.time.step = 0.1e-6;
   return c;

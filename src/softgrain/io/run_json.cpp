@@ -15,7 +15,7 @@
 #include "softgrain/core/version.hpp"
 #include "softgrain/io/file.hpp"
 #include "softgrain/io/hdf5_file.hpp"
-#include "softgrain/io/progress.hpp"
+#include "softgrain/io/verdict.hpp"
 
 namespace softgrain {
 
@@ -95,24 +95,17 @@ double cpu_seconds() {
   return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
-std::string verdict(const RunReport& report, double tolerance) {
-  if (report.steps == 0) return "no step was made";
-  const double share = static_cast<double>(report.steps_converged) / static_cast<double>(report.steps);
-  return fmt::format(
-      "converged {:.1f} % of {} steps, worst residual {:.0e} (tolerance {:.0e}), worst overlap {:.0e} of a "
-      "radius",
-      std::floor(1000 * share) / 10, grouped(report.steps), report.residual_max, tolerance,
-      report.overlap_max);
-}
-
 std::string encode_run_record(const RunRecord& record) {
   const RunReport& report = record.report;
+  const Verdict verdict = verdict_of(report, record.path);
   const Json json = {
       {"format", format_name},
       {"version", format_version},
       {"state", record.state},
       {"message", record.message},
-      {"verdict", verdict(report, record.tolerance)},
+      {"verdict", verdict.words},
+      {"doubts", verdict.doubts},
+      {"path_completed", record.state == "done" && record.path.completed},
       {"command", record.command},
       {"started", record.started},
       {"updated", utc_now()},
@@ -129,8 +122,10 @@ std::string encode_run_record(const RunRecord& record) {
         {"steps_converged", report.steps_converged},
         {"sweeps", report.sweeps},
         {"residual_max", report.residual_max},
-        {"residual_tolerance", record.tolerance},
-        {"overlap_max", report.overlap_max}}},
+        {"residual_limit", report.residual_limit},
+        {"overlap_max", report.overlap_max},
+        {"energy_error", report.energy.error},
+        {"energy_scale", report.energy.scale}}},
       {"program", program()},
       {"libraries", libraries()},
       {"machine", machine()},

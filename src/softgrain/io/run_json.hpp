@@ -22,8 +22,8 @@ struct RunRecord {
   double progress = 0;      ///< [0, 1]
   double wall_seconds = 0;  ///< of all resumed parts together
   double cpu_seconds = 0;
-  double tolerance = 0;  ///< of the solver, beside which the residual is read
   RunReport report;
+  PathOutcome path;  ///< of a run that is done
 };
 
 /// The text of run.json: the record, its verdict, and what ran it (program, libraries, machine, threads,
@@ -32,10 +32,6 @@ std::string encode_run_record(const RunRecord& record);
 
 /// What a resumed run takes over from the one before. Raises IoError when the file is not a run.json.
 RunRecord read_run_record(const std::filesystem::path& path);
-
-/// "converged 99.8 % of 30 012 steps, worst residual 3e-04 (tolerance 2e-05), worst overlap 2e-05 of a
-/// radius". 100 % only when every step converged.
-std::string verdict(const RunReport& report, double tolerance);
 
 /// The command line of this process.
 std::vector<std::string> command_line();

@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/experiment/estimate.hpp"
 #include "softgrain/io/case_extension.hpp"
 #include "softgrain/io/case_file.hpp"
+#include "softgrain/io/verdict.hpp"
 
 namespace softgrain {
 
@@ -61,8 +63,7 @@ RunRecorder::RunRecorder(const RunPaths& paths, RunRequest request, Progress& pr
   record_.command = request_.command;
   record_.started = utc_now();
   record_.seed = request_.the_case.sample.seed;
-  const Case& the_case = request_.the_case;
-  record_.tolerance = the_case.experiment.model == "mpm" ? the_case.mpm.tolerance : the_case.solver.tolerance;
+  record_.report.energy.scale = energy_at_wall_speed(request_.the_case);
 }
 
 double RunRecorder::wall_seconds() const {
@@ -156,26 +157,28 @@ RunReport RunRecorder::resume(Simulation& simulation) {
   return snapshot.report;
 }
 
-bool RunRecorder::after_step(Simulation& simulation, const StepReport& step, const RunReport& run) {
+bool RunRecorder::after_step(Simulation& simulation, const StepReport& step, RunReport& run) {
   record_.report = run;
   sums_.add(step);
   if (!step.converged && run.steps - run.steps_converged == 1)
     log(fmt::format(
-        "warning: the solver did not converge in step {} (residual {:.1e}, tolerance {:.1e}); further "
+        "warning: the solver did not converge in step {} (worst residual {:.1e}, limit {:.1e}); further "
         "steps are only counted",
-        simulation.steps_done(), step.residual_mean, record_.tolerance));
+        simulation.steps_done(), step.residual_max, step.residual_limit));
   const bool last = simulation.finished();
   const bool stop = !last && stop_wanted();
   if (last || shares_done(simulation, request_.the_case.output.samples) > rows_due_) write_row(simulation);
   const bool snapshot_due = simulation.at_turning_point() ||
                             shares_done(simulation, request_.the_case.output.snapshots) > snapshots_due_;
   if (signals_.take_snapshot_request() || last || stop || snapshot_due) save(simulation);
+  run.energy = record_.report.energy;
   progress_.update(simulation.progress(), last_row_);
   return !stop;
 }
 
 void RunRecorder::write_row(Simulation& simulation) {
   last_row_ = simulation.observe();
+  record_.report.energy.add(last_row_);
   const auto solver = solver_columns(sums_, wall_seconds());
   last_row_.insert(last_row_.end(), solver.begin(), solver.end());
   series_->write_row(last_row_);
@@ -226,11 +229,12 @@ int RunRecorder::end(const Simulation& simulation) {
   const bool done = simulation.finished();
   record_.state = done ? "done" : "stopped";
   record_.message = done ? simulation.early_end() : signal != 0 ? signal_name(signal) : "time limit";
+  if (done) record_.path = simulation.outcome();
   write_record(simulation);
+  const Verdict verdict = verdict_of(record_.report, record_.path);
   const std::string early = record_.message.empty() ? "" : " before the last strain: " + record_.message;
-  log(fmt::format("{}: {}", done ? "done" + early : "stopped by " + record_.message,
-                  verdict(record_.report, record_.tolerance)));
-  if (done) return 0;
+  log(fmt::format("{}: {}", done ? "done" + early : "stopped by " + record_.message, verdict.words));
+  if (done) return verdict.doubts.empty() ? 0 : exit_doubtful;
   return signal != 0 ? exit_code_of(signal) : exit_requeue;
 }
 
@@ -252,13 +256,11 @@ RunOutcome record_run(Simulation& simulation, const RunDirectory& directory, con
   if (!resuming) directory.clear();
   signals.defer();
   RunRecorder recorder(directory.paths(), request, progress, signals);
-  RunReport report;
-  if (resuming)
-    report = recorder.resume(simulation);  // outside: a run that cannot be resumed stays as it was
+  if (resuming) recorder.resume(simulation);  // outside: a run that cannot be resumed stays as it was
   try {
     if (!resuming) recorder.begin(simulation);
     if (!directory.caution().empty()) recorder.log(directory.caution());
-    run(simulation, recorder, report);
+    run(simulation, recorder, recorder.record().report);
     const int exit_code = recorder.end(simulation);
     return {exit_code, recorder.record()};
   } catch (const NumericalError& error) {

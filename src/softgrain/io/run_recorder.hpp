@@ -43,7 +43,7 @@ class RunRecorder final : public Recorder {
   /// and why. A run that has ended goes further if the case is an extension (why_no_extension) of the one it was
   /// begun with, from the snapshot before its end. Raises IoError when none is intact.
   RunReport resume(Simulation& simulation);
-  bool after_step(Simulation& simulation, const StepReport& step, const RunReport& run) override;
+  bool after_step(Simulation& simulation, const StepReport& step, RunReport& run) override;
 
   /// Ends the run as done, or as stopped before its end; returns the program's exit code.
   int end(const Simulation& simulation);

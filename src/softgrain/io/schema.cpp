@@ -13,6 +13,8 @@
 namespace softgrain {
 namespace {
 
+using namespace scope;
+
 Allowed anything() { return {}; }
 Allowed positive() { return {.range = {.low = 0, .without_low = true}}; }
 Allowed at_least(double low) { return {.range = {.low = low}}; }
@@ -29,7 +31,7 @@ std::vector<std::string> law_names() {
 }
 
 // clang-format off
-// A key's name and its place in Case from the same words.
+// A key's name and its place in Case from the same words. The last argument is its scope: none for everywhere.
 #define KEY(member, ...) Key{#member, +[](Case& c) -> auto& { return c.member; }, __VA_ARGS__}
 
 std::vector<Key> all_keys() {
@@ -41,84 +43,84 @@ std::vector<Key> all_keys() {
           "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other; mpm: an "
           "elastic body by the material point method"),
 
-      KEY(grain.radius, "mm", positive(), "radius R of the grain"),
+      KEY(grain.radius, "mm", positive(), "radius R of the grain", between_plates),
       KEY(grain.density, "kg/m^3", positive(), "density rho; the grain weighs rho pi R^2 per metre of depth"),
 
       KEY(bpm.primaries, "", from_to(fewest_primaries, 1e6),
-          "number of primary particles in a grain; in a box: in each, or in the smallest (bpm.equal)"),
-      KEY(bpm.size_ratio, "", from_to(1, largest_size_ratio), "largest over smallest primary diameter"),
+          "number of primary particles in a grain; in a box: in each, or in the smallest (bpm.equal)", with_bpm),
+      KEY(bpm.size_ratio, "", from_to(1, largest_size_ratio), "largest over smallest primary diameter", with_bpm),
       KEY(bpm.attraction, "N/m", positive(),
-          "attraction F0 between touching primaries of the grain, per metre of depth (diametral)"),
+          "attraction F0 between touching primaries of the grain, per metre of depth (diametral)", bpm_between_plates),
       KEY(bpm.cohesive_pressure, "MPa", positive(),
           "internal cohesive pressure sigma_I = F0/<a0>, the same in all grains: F0 follows the size of their "
-          "primaries (in a box)"),
+          "primaries (in a box)", bpm_in_a_box),
       KEY(bpm.exponent, "", at_least(1),
-          "exponent gamma of F0 (a0/r)^gamma, r the distance of the centres, a0 the sum of the radii"),
+          "exponent gamma of F0 (a0/r)^gamma, r the distance of the centres, a0 the sum of the radii", with_bpm),
 
-      KEY(bpm.inner_friction, "", at_least(0), "coefficient of friction mu between the primaries of a grain (in a box)"),
+      KEY(bpm.inner_friction, "", at_least(0), "coefficient of friction mu between the primaries of a grain (in a box)", bpm_in_a_box),
       KEY(bpm.equal, "", one_of({"count", "size"}),
-          "what all grains share: the number of primaries, or, to about 5 %, their size (in a box)"),
-      KEY(bpm.library, "", from_to(1, 1000), "different aggregates of which the grains are copies (in a box)"),
+          "what all grains share: the number of primaries, or, to about 5 %, their size (in a box)", bpm_in_a_box),
+      KEY(bpm.library, "", from_to(1, 1000), "different aggregates of which the grains are copies (in a box)", bpm_in_a_box),
 
-      KEY(mpm.law, "", one_of(law_names()), "elastic law"),
-      KEY(mpm.young_modulus, "MPa", positive(), "Young's modulus E"),
-      KEY(mpm.poisson_ratio, "", between(-1, 0.5), "Poisson's ratio nu"),
-      KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points"),
-      KEY(mpm.integrator, "", one_of({"implicit", "explicit"}), "backward Euler, or symplectic Euler with lumped masses"),
+      KEY(mpm.law, "", one_of(law_names()), "elastic law", with_mpm),
+      KEY(mpm.young_modulus, "MPa", positive(), "Young's modulus E", with_mpm),
+      KEY(mpm.poisson_ratio, "", between(-1, 0.5), "Poisson's ratio nu", with_mpm),
+      KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points", with_mpm),
+      KEY(mpm.integrator, "", one_of({"implicit", "explicit"}), "backward Euler, or symplectic Euler with lumped masses", total_lagrangian),
       KEY(mpm.formulation, "", one_of({"total_lagrangian", "updated_lagrangian"}),
           "total_lagrangian: on a grid that fits the grain; updated_lagrangian: points move through a lattice that is "
-          "reset in each step, always explicit, for comparison (diametral)"),
-      KEY(mpm.shape_functions, "", one_of({"bilinear", "gimp", "bspline"}), "of the lattice (updated_lagrangian)"),
+          "reset in each step, always explicit, for comparison (diametral)", with_mpm),
+      KEY(mpm.shape_functions, "", one_of({"bilinear", "gimp", "bspline"}), "of the lattice (updated_lagrangian)", updated_lagrangian),
       KEY(mpm.contact_on, "", one_of({"outline", "grid_nodes"}),
-          "where contact acts; total_lagrangian: on the outline only"),
+          "where contact acts; total_lagrangian: on the outline only", updated_lagrangian),
       KEY(mpm.time_step, "us", at_least(0),
-          "time step; 0: the plate moves 1 % of the smallest radius (implicit), or the stable step (explicit)"),
-      KEY(mpm.tolerance, "", positive(), "largest last correction of Newton's method over the mean grain radius"),
+          "time step; 0: the plate moves 1 % of the smallest radius (implicit), or the stable step (explicit)", with_mpm),
+      KEY(mpm.tolerance, "", positive(), "largest last correction of Newton's method over the mean grain radius", implicit),
 
       KEY(contact.friction, "", at_least(0),
-          "coefficient of friction mu between grains; diametral test of a bpm grain: between its primaries"),
+          "coefficient of friction mu between grains; diametral test of a bpm grain: between its primaries", with_pairs),
       KEY(contact.wall_friction, "", at_least(0), "coefficient of friction mu against walls"),
-      KEY(contact.restitution, "", from_to(0, 1), "Newton's coefficient of restitution e_n"),
+      KEY(contact.restitution, "", from_to(0, 1), "Newton's coefficient of restitution e_n", with_bpm),
       KEY(contact.activation, "", one_of({"anticipated", "closed_at_mid_step", "closed_at_end_of_step"}),
           "when a contact is active: always, so that it may close within the step; or when it is closed at mid-step, or "
-          "will be at the end of the step"),
-      KEY(contact.push_out, "", from_to(0, 1), "share beta of an existing overlap that is removed in a step"),
+          "will be at the end of the step", with_bpm),
+      KEY(contact.push_out, "", from_to(0, 1), "share beta of an existing overlap that is removed in a step", with_bpm),
 
-      KEY(solver.min_sweeps, "", at_least(1), "sweeps of the contact solver in every step"),
-      KEY(solver.max_sweeps, "", at_least(1), "sweeps after which a step counts as not converged"),
+      KEY(solver.min_sweeps, "", at_least(1), "sweeps of the contact solver in every step", with_bpm),
+      KEY(solver.max_sweeps, "", at_least(1), "sweeps after which a step counts as not converged", with_bpm),
       KEY(solver.tolerance, "", positive(),
-          "converged: mean penetration gained in a step over the mean primary diameter is below this"),
-      KEY(solver.relaxation, "", between(0, 2), "over-relaxation omega of a sweep; 1 is plain Gauss-Seidel"),
+          "converged: mean penetration gained in a step over the mean primary diameter is below this", with_bpm),
+      KEY(solver.relaxation, "", between(0, 2), "over-relaxation omega of a sweep; 1 is plain Gauss-Seidel", with_bpm),
       KEY(solver.precision, "", one_of({"single", "double"}),
-          "of impulses and velocities within the sweeps of a bpm step; double for tolerances below 1e-11"),
+          "of impulses and velocities within the sweeps of a bpm step; double for tolerances below 1e-11", with_bpm),
 
       KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top plate; isotropic: of opposite walls towards each other, half by each"),
       KEY(loading.max_strain, "", between(0, 3),
           "strain at the end: eps = -ln(1 - d/R), d half the travel of the plate; in a box: eps = ln(h_start/h)"),
       KEY(loading.max_packing_fraction, "", from_to(0, 2),
-          "packing fraction Phi_0 of the undeformed grains at the end, if max_strain comes later; 0: none (in a box)"),
+          "packing fraction Phi_0 of the undeformed grains at the end, if max_strain comes later; 0: none (in a box)", in_a_box),
       KEY(loading.max_stress, "MPa", at_least(0),
-          "vertical stress at the end, mean of lid and bottom over 0.1 % of strain; 0: none (in a box)"),
+          "vertical stress at the end, mean of lid and bottom over 0.1 % of strain; 0: none (in a box)", in_a_box),
       KEY(loading.max_overlap, "", from_to(0, 0.05),
-          "mean overlap of primaries in contact, over their mean radius, at the end; 0: none (bpm in a box)"),
+          "mean overlap of primaries in contact, over their mean radius, at the end; 0: none (bpm in a box)", bpm_in_a_box),
       KEY(loading.unload_at, "", positive(),
           "ascending strains at which the plate turns back once; [] for none"),
-      KEY(loading.unload_by, "", positive(), "strain given back before loading again"),
+      KEY(loading.unload_by, "", positive(), "strain given back before loading again", with_unloading),
       KEY(loading.hold, "us", at_least(0), "rest of the plate wherever it turns, and at the end"),
       KEY(loading.hold_stress, "MPa", at_least(0),
           "vertical stress at which the walls leave their path: they keep it for loading.hold, which ends the run; 0: none "
-          "(in a box)"),
+          "(in a box)", in_a_box),
 
       KEY(time.step, "us", at_least(0),
-          "time step dt (bpm); 0: stable step, a 43rd of the period of the bonds between the smallest primaries"),
+          "time step dt (bpm); 0: stable step, a 43rd of the period of the bonds between the smallest primaries", with_bpm),
 
       KEY(sample.seed, "", at_least(0),
-          "seed of the random numbers; another seed is another sample of the same grain"),
-      KEY(sample.grains, "", from_to(1, 1e6), "grains in the box"),
-      KEY(sample.packing_fraction, "", between(0, 0.8), "undeformed grain area over box area at the start"),
-      KEY(sample.aspect, "", from_to(0.01, 100), "width over height of the box at the start"),
-      KEY(sample.smallest_diameter, "mm", positive(), "of the grains in the box, uniform between"),
-      KEY(sample.largest_diameter, "mm", positive(), "of the grains in the box"),
+          "seed of the random numbers; another seed is another sample of the same grain", with_chance),
+      KEY(sample.grains, "", from_to(1, 1e6), "grains in the box", in_a_box),
+      KEY(sample.packing_fraction, "", between(0, 0.8), "undeformed grain area over box area at the start", in_a_box),
+      KEY(sample.aspect, "", from_to(0.01, 100), "width over height of the box at the start", in_a_box),
+      KEY(sample.smallest_diameter, "mm", positive(), "of the grains in the box, uniform between", in_a_box),
+      KEY(sample.largest_diameter, "mm", positive(), "of the grains in the box", in_a_box),
 
       KEY(output.samples, "", from_to(1, 1e6), "rows of series.csv, evenly over the run"),
       KEY(output.snapshots, "", from_to(0, 1e5), "restart points, evenly over the run"),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "softgrain/experiment/case.hpp"
+#include "softgrain/io/scope.hpp"
 
 namespace softgrain {
 
@@ -41,6 +42,7 @@ struct Key {
       unit;  ///< in which people write it: "mm"; fixes the dimension; "" for plain numbers and words
   Allowed allowed;
   std::string_view text;
+  Scope acts = scope::everywhere;  ///< where it acts; elsewhere it is taken, and a note says so
 
   std::string table() const { return name.substr(0, name.find('.')); }
   std::string short_name() const { return name.substr(name.find('.') + 1); }

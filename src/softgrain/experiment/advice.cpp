@@ -1,0 +1,41 @@
+#include "softgrain/experiment/advice.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "softgrain/experiment/estimate.hpp"
+
+namespace softgrain {
+namespace {
+
+bool is_diametral(const Case& c) { return c.experiment.loading == "diametral"; }
+
+/// <a0> of one grain [m]: primaries of equal size that fill pi R^2 at a packing fraction of 0.84.
+double mean_distance(const Case& c) { return 2 * c.grain.radius * std::sqrt(0.84 / c.bpm.primaries); }
+
+double stress_of(const Case& c) {
+  if (!is_diametral(c) && c.loading.hold_stress > 0) return c.loading.hold_stress;
+  if (!is_diametral(c) && c.loading.max_stress > 0) return c.loading.max_stress;
+  if (c.experiment.model == "mpm") return c.mpm.young_modulus;
+  return is_diametral(c) ? c.bpm.attraction / mean_distance(c) : c.bpm.cohesive_pressure;
+}
+
+/// |d eps/dt| d at the start [m/s].
+double rate_times_diameter(const Case& c) {
+  if (is_diametral(c)) return c.loading.wall_velocity;  // v/(2 R) 2 R
+  const double diameter = (c.sample.smallest_diameter + c.sample.largest_diameter) / 2;
+  return c.loading.wall_velocity / box_height(c) * diameter;
+}
+
+}  // namespace
+
+Advice advise(const Case& c) {
+  Advice advice;
+  advice.time_step = first_time_step(c);
+  advice.longest_step = std::numeric_limits<double>::infinity();
+  advice.stress = stress_of(c);
+  advice.inertial_number = rate_times_diameter(c) * std::sqrt(c.grain.density / advice.stress);
+  return advice;
+}
+
+}  // namespace softgrain

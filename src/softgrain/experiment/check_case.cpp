@@ -1,0 +1,40 @@
+#include "softgrain/experiment/check_case.hpp"
+
+#include <algorithm>
+
+#include "softgrain/experiment/create.hpp"
+#include "softgrain/experiment/estimate.hpp"
+#include "softgrain/experiment/sample.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Primaries or points of a simulation that is created at once.
+constexpr double few_primaries = 5000, few_points = 1e5;
+/// Grains whose places are looked for at once.
+constexpr int few_grains = 300;
+
+/// A few small grains, far apart.
+Case twin_of(Case c) {
+  c.bpm.primaries = std::min(c.bpm.primaries, 20);
+  c.bpm.library = 1;
+  c.mpm.cells = std::min(c.mpm.cells, 4);
+  c.sample.grains = std::min(c.sample.grains, 8);
+  c.sample.packing_fraction = std::min(c.sample.packing_fraction, 0.2);
+  c.sample.aspect = 1;
+  return c;
+}
+
+}  // namespace
+
+void check_case(const Case& c) {
+  const bool bpm = c.experiment.model == "bpm";
+  if (estimate(c).particles <= (bpm ? few_primaries : few_points)) {
+    create_simulation(c);
+    return;
+  }
+  create_simulation(twin_of(c));
+  if (c.experiment.loading != "diametral" && c.sample.grains <= few_grains) sample_box(c);
+}
+
+}  // namespace softgrain

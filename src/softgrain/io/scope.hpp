@@ -1,0 +1,54 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "softgrain/experiment/case.hpp"
+
+namespace softgrain {
+
+/// For which cases a key of the case file does anything.
+struct Scope {
+  std::string_view words;  ///< completes "it acts only ...": "on bpm"
+  bool (*covers)(const Case&);
+};
+
+namespace scope {
+
+inline bool is_bpm(const Case& c) { return c.experiment.model == "bpm"; }
+inline bool is_mpm(const Case& c) { return c.experiment.model == "mpm"; }
+inline bool is_in_a_box(const Case& c) { return c.experiment.loading != "diametral"; }
+inline bool is_updated_lagrangian(const Case& c) {
+  return is_mpm(c) && c.mpm.formulation == "updated_lagrangian";
+}
+inline bool is_total_lagrangian(const Case& c) { return is_mpm(c) && !is_updated_lagrangian(c); }
+
+inline constexpr Scope everywhere{"", [](const Case&) { return true; }};
+inline constexpr Scope with_bpm{"on bpm", is_bpm};
+inline constexpr Scope with_mpm{"on mpm", is_mpm};
+inline constexpr Scope in_a_box{"in a box", is_in_a_box};
+inline constexpr Scope between_plates{"between plates", [](const Case& c) { return !is_in_a_box(c); }};
+inline constexpr Scope bpm_in_a_box{"on bpm in a box",
+                                    [](const Case& c) { return is_bpm(c) && is_in_a_box(c); }};
+inline constexpr Scope bpm_between_plates{"on bpm between plates",
+                                          [](const Case& c) { return is_bpm(c) && !is_in_a_box(c); }};
+inline constexpr Scope total_lagrangian{"on total_lagrangian mpm", is_total_lagrangian};
+inline constexpr Scope updated_lagrangian{"on updated_lagrangian mpm", is_updated_lagrangian};
+inline constexpr Scope implicit{"on implicit mpm", [](const Case& c) {
+                                  return is_total_lagrangian(c) && c.mpm.integrator == "implicit";
+                                }};
+inline constexpr Scope with_pairs{"on bpm or between the grains of a box", [](const Case& c) {
+                                    return is_bpm(c) || (is_in_a_box(c) && c.sample.grains > 1);
+                                  }};
+inline constexpr Scope with_chance{"on bpm or in a box",
+                                   [](const Case& c) { return is_bpm(c) || is_in_a_box(c); }};
+inline constexpr Scope with_unloading{"with loading.unload_at",
+                                      [](const Case& c) { return !c.loading.unload_at.empty(); }};
+
+}  // namespace scope
+
+/// "note: time.step and solver.tolerance have no effect on mpm between plates: they act only on bpm": a line
+/// for each scope that the keys of these full names have and the case lacks.
+std::vector<std::string> notes_on_effect(const Case& the_case, const std::vector<std::string>& keys);
+
+}  // namespace softgrain

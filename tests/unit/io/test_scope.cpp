@@ -1,0 +1,98 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "softgrain/experiment/create.hpp"
+#include "softgrain/io/case_file.hpp"
+#include "softgrain/io/case_text.hpp"
+#include "softgrain/io/case_value.hpp"
+#include "softgrain/io/schema.hpp"
+#include "softgrain/io/toml_document.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+/// One of each kind, small.
+std::vector<std::pair<std::string, std::string>> kinds() {
+  const std::string few = "[sample]\ngrains = 3\npacking_fraction = 0.5\n[bpm]\nprimaries = 10\n";
+  const std::string box = "[experiment]\nloading = 'compaction'\nmodel = ";
+  return {{"bpm between plates", "[bpm]\nprimaries = 10\n"},
+          {"bpm in a box", few + box + "'bpm'\n"},
+          {"implicit", "[experiment]\nmodel = 'mpm'\n[mpm]\ncells = 4\n"},
+          {"explicit", "[experiment]\nmodel = 'mpm'\n[mpm]\ncells = 4\nintegrator = 'explicit'\n"},
+          {"lattice", "[experiment]\nmodel = 'mpm'\n[mpm]\ncells = 4\nformulation = 'updated_lagrangian'\n"},
+          {"mpm in a box", few + box + "'mpm'\n[mpm]\ncells = 4\n"}};
+}
+
+/// Rows of the first steps, all numbers.
+std::vector<double> rows(const Case& the_case) {
+  const auto simulation = create_simulation(the_case);
+  std::vector<double> numbers;
+  for (int k = 0; k < 3; ++k) {
+    simulation->step();
+    for (const Quantity& quantity : simulation->observe()) numbers.push_back(quantity.value);
+  }
+  return numbers;
+}
+
+/// Another valid value of the key, as text.
+std::string another_value(const Case& the_case, const Key& key) {
+  for (const std::string& word : key.allowed.words)
+    if (const std::string text = "'" + word + "'"; "\"" + word + "\"" != si_value(the_case, key)) return text;
+  for (const char* number : {"17", "3", "0.7", "0.03", "1", "2e-9", "[0.01]"}) {
+    try {
+      Case other = the_case;
+      assign(other, key, parse_toml(std::string("value = ") + number).front().value);
+      if (si_value(other, key) != si_value(the_case, key)) return number;
+    } catch (const UsageError&) {
+      // the next one
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a key that is said to have no effect changes no bit of the motion") {
+  int silent = 0;
+  for (const auto& [kind, text] : kinds()) {
+    const Case the_case = parse_case(text, kind);
+    const std::vector<double> expected = rows(the_case);
+    for (const Key& key : case_keys()) {
+      if (key.acts.covers(the_case)) continue;
+      INFO(kind << ": " << key.name);
+      const std::string set = key.name + "=" + another_value(the_case, key);
+      try {
+        const CaseReading reading = parse_case_with_notes(text, kind, {set});
+        ++silent;
+        CHECK(std::ranges::count(reading.without_effect, key.name) == 1);
+        CHECK(rows(reading.the_case) == expected);
+      } catch (const CaseFileError&) {
+        // refused: that is no silence either
+      }
+    }
+  }
+  CHECK(silent > 100);
+}
+
+TEST_CASE("a note names keys that do nothing, and where they would act") {
+  const std::string text =
+      "[experiment]\nmodel = 'mpm'\n[time]\nstep = '1 ns'\n[contact]\npush_out = 1\n[sample]\ngrains = 5\n"
+      "[solver]\nmin_sweeps = 10\n";  // its default: no wish
+  const CaseReading reading = parse_case_with_notes(text, "case.toml", {"solver.max_sweeps=50"});
+  CHECK(reading.without_effect ==
+        std::vector<std::string>{"contact.push_out", "solver.max_sweeps", "time.step", "sample.grains"});
+  CHECK(notes_on_effect(reading.the_case, reading.without_effect) ==
+        std::vector<std::string>{
+            "note: contact.push_out, solver.max_sweeps and time.step have no effect on mpm "
+            "between plates: they act only on bpm",
+            "note: sample.grains has no effect on mpm between plates: it acts only in a box"});
+}
+
+TEST_CASE("no template and no resolved case gives a key without effect") {
+  for (const CaseTemplate& start : case_templates()) {
+    CHECK(parse_case_with_notes(commented_case_text(start.content), start.name).without_effect.empty());
+    CHECK(parse_case_with_notes(resolved_case_text(start.content), start.name).without_effect.empty());
+  }
+}
