@@ -25,7 +25,8 @@ Case case_of(const char* loading, const char* model) {
   c.sample.grains = 2;
   c.sample.packing_fraction = 0.3;
   c.loading = {.wall_velocity = 1, .max_strain = 0.011, .unload_at = {0.003, 0.006, 0.01}, .unload_by = 2e-4};
-  c.time.step = 5e-6;
+  c.time.step = 2e-6;
+  if (c.experiment.model == "bpm") c.loading.wall_velocity = 2.5;  // as far in a step
   c.mpm.time_step = 40e-6;
   return c;
 }

@@ -64,7 +64,9 @@ TEST_CASE("all errors come at once, sorted by line, each with its line of the fi
   CHECK(
       refusal("[time]\nstep = \"1 parsec\"\n[grain]\ndensty = \"990 kg/m^3\"\n[loading]\n\twall_velocity = "
               "\"2 m\"\n") ==
-      "case.toml:2:8: error: time.step: unknown unit 'parsec'\n"
+      "case.toml:2:8: error: time.step: unknown unit 'parsec'; units are m, g, s, Hz, N, Pa, J, W, bar (and "
+      "with "
+      "prefixes, as in mm or kPa), min, h, %, rad, deg\n"
       "    2 | step = \"1 parsec\"\n"
       "      |        ^\n"
       "case.toml:4:1: error: unknown key 'grain.densty'; did you mean 'grain.density'?\n"
