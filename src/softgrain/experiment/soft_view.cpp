@@ -33,11 +33,13 @@ std::vector<ContactPoint> contact_points(const SoftView& view) {
               n = grains.outline_end(g) - begin;
     const Vec<2>&before = x[begin + (v - begin + n - 1) % n], &after = x[begin + (v - begin + 1) % n];
     const bool wall = contact.wall >= 0;
+    Vec<2> place = x[v];
+    if (wall) place += 0.5 * contact.share * (x[contact.master[2]] - x[contact.master[0]]);
     points.push_back({.a = g,
                       .b = wall ? wall_index(contact.wall) : grains.grain_of_vertex(contact.master[0]),
                       .force = (-1 / view.impulse_time) * impulse_vector(contact, view.impulse[c]),
                       .normal = -contact.normal,
-                      .position = x[v],
+                      .position = place,
                       .length = (wall ? 0.5 : 0.25) * (norm(x[v] - before) + norm(x[v] - after))});
   }
   return points;

@@ -18,8 +18,8 @@ void ContactStrips::sort(std::span<const OutlineContact> contacts, std::span<con
     const double x = position[contacts[c].vertex][0];
     low = c == 0 ? x : std::min(low, x);
     high = c == 0 ? x : std::max(high, x);
-    if (contacts[c].wall < 0)
-      for (const int vertex : contacts[c].master) reach = std::max(reach, std::abs(position[vertex][0] - x));
+    contacts[c].for_each_vertex(
+        [&](int vertex, double) { reach = std::max(reach, std::abs(position[vertex][0] - x)); });
   }
   // vertices of strip s lie in (s width - reach, (s + 1) width + reach)
   const double length = high - low, most = reach > 0 ? length / (2.01 * reach) : n;

@@ -54,9 +54,7 @@ void ElasticContacts::number_vertices(const SoftGrains& grains, std::span<const 
                                       std::span<const Vec<2>> increment) {
   local_.assign(grains.outline_size(), -1);
   for (const OutlineContact& contact : contacts) {
-    local_[contact.vertex] = 0;
-    if (contact.wall >= 0) continue;
-    for (const int m : contact.master) local_[m] = 0;
+    contact.for_each_vertex([&](int vertex, double) { local_[vertex] = 0; });
   }
   for (int g = 0; g < grains.size(); ++g) {
     Condensed& grain = grain_[g];
@@ -79,14 +77,12 @@ void ElasticContacts::set(Contact& contact, const OutlineContact& found, const S
     contact.velocity[k] = grain_[grain].velocity + 2 * local_[vertex];
     contact.weight[k] = weight;
   };
-  set_vertex(0, contact.slave_grain, found.vertex, 1);
+  contact.vertices = 0;
+  found.for_each_vertex([&](int vertex, double weight) {
+    set_vertex(static_cast<std::size_t>(contact.vertices++), grains.grain_of_vertex(vertex), vertex, weight);
+  });
   contact.normal = found.normal;
   contact.start = {found.gap / dt_, found.slip / dt_};
-  if (contact.master_grain >= 0) {
-    contact.vertices = 5;
-    const auto weight = found.weights();
-    for (std::size_t m = 0; m < 4; ++m) set_vertex(m + 1, contact.master_grain, found.master[m], -weight[m]);
-  }
   contact.delassus = delassus_of(contact);
 }
 
@@ -104,7 +100,7 @@ Mat<2> ElasticContacts::delassus_of(const Contact& contact) const {
           for (int j = 0; j < 2; ++j) C(i, j) += weight * block[width * i + j];
       }
   };
-  add(contact.slave_grain, 0, 1);
+  add(contact.slave_grain, 0, contact.of_slave());
   if (contact.master_grain >= 0) add(contact.master_grain, 1, 5);
   const std::array<Vec<2>, 2> axis{contact.normal, perpendicular(contact.normal)};
   Mat<2> W;
@@ -145,7 +141,10 @@ const float* ElasticContacts::column(Contact& contact, int axis) {
   if (contact.made[axis]) return column;
   contact.made[axis] = true;
   const Vec<2> direction = axis == 0 ? contact.normal : perpendicular(contact.normal);
-  fill<1>(contact, 0, contact.slave_grain, direction, column);
+  if (contact.of_slave() == 1)
+    fill<1>(contact, 0, contact.slave_grain, direction, column);
+  else
+    fill<3>(contact, 0, contact.slave_grain, direction, column);
   if (contact.master_grain >= 0)
     fill<4>(contact, 1, contact.master_grain, direction, column + grain_[contact.slave_grain].width);
   return column;
@@ -198,10 +197,7 @@ std::vector<Vec<2>> contact_forces(const SoftGrains& grains, std::span<const Out
   std::vector<Vec<2>> force(grains.outline_size());
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Vec<2> f = (1 / dt) * impulse_vector(contacts[c], impulse[c]);
-    force[contacts[c].vertex] += f;
-    if (contacts[c].wall >= 0) continue;
-    const auto weight = contacts[c].weights();
-    for (std::size_t m = 0; m < 4; ++m) force[contacts[c].master[m]] -= weight[m] * f;
+    contacts[c].for_each_vertex([&](int vertex, double weight) { force[vertex] += weight * f; });
   }
   return force;
 }

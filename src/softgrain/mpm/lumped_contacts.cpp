@@ -14,10 +14,10 @@ constexpr int least_for_threads = 512;
 
 inline Vec<2> LumpedContacts::relative_velocity(const Row& row) const {
   const Vec<2>* v = velocity_.data();
-  Vec<2> u = v[row.vertex[0]];
-  if (!row.wall)
-    u -= (row.weight[0] * v[row.vertex[1]] + row.weight[1] * v[row.vertex[2]]) +
-         (row.weight[2] * v[row.vertex[3]] + row.weight[3] * v[row.vertex[4]]);
+  Vec<2> u = row.weight[0] * v[row.vertex[0]];
+  if (!row.single)
+    u += (row.weight[1] * v[row.vertex[1]] + row.weight[2] * v[row.vertex[2]]) +
+         (row.weight[3] * v[row.vertex[3]] + row.weight[4] * v[row.vertex[4]]);
   return {dot(row.normal, u) + row.offset[0], dot(perpendicular(row.normal), u) + row.offset[1]};
 }
 
@@ -25,7 +25,7 @@ inline void LumpedContacts::apply_impulse(const Row& row, const Vec<2>& dp) {
   const Vec<2> P = dp[0] * row.normal + dp[1] * perpendicular(row.normal);
   Vec<2>* v = velocity_.data();
   v[row.vertex[0]] += row.mobility[0] * P;
-  if (row.wall) return;
+  if (row.single) return;
   for (std::size_t k = 1; k < 5; ++k) v[row.vertex[k]] += row.mobility[k] * P;
 }
 
@@ -54,20 +54,19 @@ void LumpedContacts::for_each_strip(const Work& work) const {
 LumpedContacts::Row LumpedContacts::row_of(const OutlineContact& contact, const OutlineState& outline,
                                            std::span<const double> inverse_mass) const {
   Row row;
-  row.vertex[0] = contact.vertex;
+  row.vertex.fill(contact.vertex);
+  std::size_t count = 0;
+  contact.for_each_vertex([&](int vertex, double weight) {
+    row.vertex[count] = vertex;
+    row.weight[count] = weight;
+    row.mobility[count] = weight * inverse_mass[vertex];
+    row.delassus += weight * row.mobility[count++];
+  });
+  row.single = count == 1;
   row.normal = contact.normal;
-  row.delassus = row.mobility[0] = inverse_mass[contact.vertex];
-  row.wall = contact.wall >= 0;
-  if (row.wall) {
+  if (contact.wall >= 0) {
     const Vec<2>& v = outline.walls[contact.wall].velocity;
     row.offset = {-dot(contact.normal, v), -dot(perpendicular(contact.normal), v)};
-  } else {
-    row.weight = contact.weights();
-    for (std::size_t k = 0; k < 4; ++k) {
-      row.vertex[k + 1] = contact.master[k];
-      row.mobility[k + 1] = -row.weight[k] * inverse_mass[contact.master[k]];
-      row.delassus -= row.weight[k] * row.mobility[k + 1];
-    }
   }
   row.inverse_delassus = 1 / row.delassus;
   row.offset[0] += contact.gap / outline.dt - relative_velocity(row)[0];

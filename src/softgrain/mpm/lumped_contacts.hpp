@@ -12,6 +12,7 @@ namespace softgrain {
 
 /// Contacts of explicit grains as a ContactSystem: the outline's lumped masses answer at once,
 ///   u = v_slave - sum_k w_k v_k,   W = (1/m_slave + sum_k w_k^2/m_k) 1,
+/// or at a wall sum_k w_k v_k and sum_k w_k^2/m_k,
 /// with u_n changed to the gap at the end of the step over dt, (g + dt n . (u - u_found))/dt, where u_found
 /// had brought the outlines to where the contacts were found.
 class LumpedContacts {
@@ -37,14 +38,14 @@ class LumpedContacts {
   Violation sweep(std::span<Vec<2>> impulse, std::span<const double> friction, const SolverOptions& options);
 
  private:
-  // per contact and sweep: reads 152 B in the order of memory, and five velocities
+  // per contact and sweep: reads 160 B in the order of memory, and five velocities
   struct Row {
     int contact = 0;
-    bool wall = false;
-    std::array<int, 5> vertex{};       // the slave, then, unless it faces a wall, the master's
-    std::array<double, 4> weight{};    // w_k
-    std::array<double, 5> mobility{};  // 1/m_slave, -w_k/m_k: velocity by a unit impulse
-    Vec<2> normal, offset;             // u = (n, t) . (v_slave - sum w_k v_k) + offset
+    bool single = false;               // one vertex, at a wall
+    std::array<int, 5> vertex{};       // the slave, then the master's; or the four of a place at a wall
+    std::array<double, 5> weight{};    // 1, -w_k; or w_k, 0
+    std::array<double, 5> mobility{};  // weight/m: velocity by a unit impulse
+    Vec<2> normal, offset;             // u = (n, t) . sum weight v + offset
     double delassus = 0, inverse_delassus = 0;
   };
   const Row& row(int contact) const { return rows_[strips_.place[contact]]; }

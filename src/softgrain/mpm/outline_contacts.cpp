@@ -8,6 +8,7 @@
 
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/cell_grid.hpp"
+#include "softgrain/mpm/span_curve.hpp"
 
 namespace softgrain {
 namespace {
@@ -43,41 +44,6 @@ struct Nearest {
   double distance_squared;
 };
 
-/// The curve of a span as a polynomial, c(xi) = a + xi (b + xi (c + xi d)).
-class SpanCurve {
- public:
-  SpanCurve(std::span<const Vec<2>> position, const std::array<int, 4>& vertices)
-      : start_(position[vertices[1]]), end_(position[vertices[2]]) {
-    const Vec<2>&x_0 = position[vertices[0]], &x_3 = position[vertices[3]];
-    b_ = 0.5 * (end_ - x_0);
-    d_ = 0.5 * (x_3 - x_0) + 1.5 * (start_ - end_);
-    c_ = end_ - start_ - b_ - d_;
-  }
-  Vec<2> place(double xi) const { return start_ + xi * (b_ + xi * (c_ + xi * d_)); }
-  Vec<2> tangent(double xi) const { return b_ + xi * (2.0 * c_ + 3 * xi * d_); }
-
-  /// Where in [0, 1] it is closest to x: the root of (x - c) . c', by Newton's method inside a bracket.
-  double closest_to(const Vec<2>& x) const {
-    const Vec<2> chord = end_ - start_;
-    double low = 0, high = 1;
-    double xi = std::clamp(dot(x - start_, chord) / dot(chord, chord), 0.0, 1.0);
-    for (int pass = 0; pass < 50; ++pass) {
-      const Vec<2> d = x - place(xi), t = tangent(xi);
-      const double descent = dot(d, t), slope = dot(t, t) - dot(d, 2.0 * c_ + 6 * xi * d_);
-      (descent > 0 ? low : high) = xi;
-      const double newton = xi + descent / slope;
-      const bool trusted = slope > 0 && newton >= low && newton <= high;
-      const double step = (trusted ? newton : (low + high) / 2) - xi;
-      xi += step;
-      if (std::abs(step) < (trusted ? 1e-7 : 1e-13)) break;  // Newton's error is the square of its step
-    }
-    return xi;
-  }
-
- private:
-  Vec<2> start_, end_, b_, c_, d_;
-};
-
 /// The vertex of a master's outline where the segment starts that x faces, next to the vertex nearest to x.
 int facing_segment(const Ring& ring, std::span<const Vec<2>> position, const Vec<2>& x, int nearest) {
   const int before = ring.previous(nearest);
@@ -95,25 +61,35 @@ bool surely_outside(const Vec<2>& start, const Vec<2>& end, const Vec<2>& x, dou
   return beyond > 0 && beyond * beyond > margin * margin * square;
 }
 
-/// The place of a span that a slave faces.
-OutlineContact curve_contact(const OutlineState& state, int slave, const std::array<int, 4>& span) {
-  const Vec<2>& x = state.position[slave];
-  OutlineContact contact{.vertex = slave, .master = span};
-  const SpanCurve curve(state.position, span);
+/// The place that a slave faces on the curve from the vertex `start` to the next.
+OutlineContact curve_contact(std::span<const Vec<2>> position, const Ring& ring, int slave, int start) {
+  const Vec<2>& x = position[slave];
+  const int end = ring.next(start);
+  OutlineContact contact{.vertex = slave, .master = {ring.previous(start), start, end, ring.next(end)}};
+  const SpanCurve curve(position, contact.master);
   contact.share = curve.closest_to(x);
   const Vec<2> t = curve.tangent(contact.share);
   contact.normal = (-1 / norm(t)) * perpendicular(t);  // outward of a counter-clockwise outline
   contact.gap = dot(x - curve.place(contact.share), contact.normal);
-  contact.slip = dot(perpendicular(contact.normal), relative_displacement(contact, state));
   return contact;
 }
 
-OutlineContact wall_contact(const OutlineState& state, int slave, int wall_index) {
+/// The vertex v and its arc against a wall. With s = n . (x_next - x_previous)/2 and theta the arc's
+/// inclination, sin theta = s/l, the lowest place of the arc is f(s) = r (1 - cos theta) below the vertex; g
+/// = h - f is concave, so that outlines clear of a wall are a convex set.
+OutlineContact wall_contact(const OutlineState& state, int wall_index, const std::array<int, 4>& span,
+                            double height, const OutlineArc& arc, double size) {
   const Wall<2>& wall = state.walls[wall_index];
-  OutlineContact contact{.vertex = slave,
-                         .wall = wall_index,
-                         .normal = wall.normal,
-                         .gap = dot(state.position[slave] - wall.point, wall.normal)};
+  OutlineContact contact{
+      .vertex = span[1], .wall = wall_index, .master = span, .normal = wall.normal, .gap = height};
+  if (arc.end_sine > 0) {
+    const double s = dot(state.position[span[2]] - state.position[span[0]], wall.normal) / 2;
+    const double sine = std::clamp(s / (size * arc.half_chord), -arc.end_sine, arc.end_sine);
+    const double cosine = std::sqrt(1 - sine * sine);
+    contact.share = -arc.radius / arc.half_chord * sine / cosine;  // xi = -f'(s)
+    contact.rise = size * arc.radius * (1 / cosine - 1);           // of f's conjugate
+    contact.gap += contact.share * s + contact.rise;
+  }
   contact.slip = dot(perpendicular(wall.normal), relative_displacement(contact, state));
   return contact;
 }
@@ -133,6 +109,13 @@ int nearest_vertex(const Ring& ring, std::span<const Vec<2>> position, const Vec
     nearest = d_before < d_after ? before : after;
     least = std::min(d_before, d_after);
   }
+}
+
+/// Where the slave v faces a master half-way through the step, near the vertex `nearest`.
+OutlineContact half_way_contact(std::span<const Vec<2>> half_way, const Ring& ring, int v, int nearest) {
+  const Vec<2>& x = half_way[v];
+  nearest = nearest_vertex(ring, half_way, x, nearest);
+  return curve_contact(half_way, ring, v, facing_segment(ring, half_way, x, nearest));
 }
 
 /// The vertex of each grain within `reach` of vertex v that is nearest to it, sorted by grain.
@@ -206,8 +189,14 @@ void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineSta
   for (int v = part.begin; v < part.end; ++v) {
     const Vec<2>& x = state.position[v];
     for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
-      const Wall<2>& wall = state.walls[w];
-      if (dot(x - wall.point, wall.normal) < margin) part.contacts.push_back(wall_contact(state, v, w));
+      const double height = dot(x - state.walls[w].point, state.walls[w].normal);
+      if (height > margin + segment_) continue;
+      const Ring ring = ring_of(grains, v);
+      const int grain = grains.grain_of_vertex(v), next = ring.next(v);
+      const OutlineContact contact =
+          wall_contact(state, w, {ring.previous(v), v, next, ring.next(next)}, height,
+                       grains.topology(grain).arc[v - ring.begin], grains.radius(grain));
+      if (contact.gap < margin) part.contacts.push_back(contact);
     }
     for (; candidate != part.candidates.end() && candidate->vertex == v; ++candidate) {
       const Ring ring = ring_of(grains, candidate->nearest);
@@ -216,9 +205,12 @@ void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineSta
       if (dot(d, d) > 9 * segment_ * segment_) continue;
       const int start = facing_segment(ring, state.position, x, candidate->nearest), end = ring.next(start);
       if (surely_outside(state.position[start], state.position[end], x, margin)) continue;
-      const OutlineContact contact =
-          curve_contact(state, v, {ring.previous(start), start, end, ring.next(end)});
-      if (contact.gap < margin) part.contacts.push_back(contact);
+      const double gap = curve_contact(state.position, ring, v, start).gap;
+      if (gap >= margin) continue;
+      OutlineContact contact = half_way_contact(half_way_, ring, v, candidate->nearest);
+      contact.gap = gap;
+      contact.slip = dot(perpendicular(contact.normal), relative_displacement(contact, state));
+      part.contacts.push_back(contact);
     }
   }
 }
@@ -227,6 +219,9 @@ std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, 
                                                       double margin) {
   assert(margin <= largest_margin);
   if (moved_far(state)) find_candidates(grains, state);
+  half_way_.resize(state.position.size());
+  for (std::size_t v = 0; v < half_way_.size(); ++v)
+    half_way_[v] = 0.5 * (state.start[v] + state.position[v]);
   parallel_for(static_cast<int>(parts_.size()),
                [&](int k) { find_contacts(grains, state, margin * segment_, parts_[k]); });
   std::size_t count = 0;
@@ -238,17 +233,21 @@ std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, 
 }
 
 Vec<2> relative_displacement(const OutlineContact& contact, const OutlineState& state) {
-  const auto moved = [&](int vertex) { return state.position[vertex] - state.start[vertex]; };
-  if (contact.wall >= 0) return moved(contact.vertex) - state.dt * state.walls[contact.wall].velocity;
-  const auto weight = contact.weights();
-  Vec<2> displacement = moved(contact.vertex);
-  for (std::size_t k = 0; k < 4; ++k) displacement -= weight[k] * moved(contact.master[k]);
+  Vec<2> displacement;
+  if (contact.wall >= 0) displacement -= state.dt * state.walls[contact.wall].velocity;
+  contact.for_each_vertex([&](int vertex, double weight) {
+    displacement += weight * (state.position[vertex] - state.start[vertex]);
+  });
   return displacement;
 }
 
 double gap_now(const OutlineContact& contact, const OutlineState& state) {
+  if (contact.wall >= 0) {
+    Vec<2> apart = -state.walls[contact.wall].point;
+    contact.for_each_vertex([&](int vertex, double weight) { apart += weight * state.position[vertex]; });
+    return dot(apart, contact.normal) + contact.rise;
+  }
   const Vec<2>& x = state.position[contact.vertex];
-  if (contact.wall >= 0) return dot(x - state.walls[contact.wall].point, contact.normal);
   const SpanCurve curve(state.position, contact.master);
   const double xi = curve.closest_to(x);
   const Vec<2> t = curve.tangent(xi);
@@ -260,8 +259,8 @@ std::vector<Vec<2>> carried_impulses(const SoftGrains& grains, std::span<const O
                                      std::span<const OutlineContact> contacts) {
   std::vector<Vec<2>> impulse(contacts.size());
   const auto same = [&](const OutlineContact& a, const OutlineContact& b) {
-    return a.wall == b.wall &&
-           (a.wall >= 0 || grains.grain_of_vertex(a.master[0]) == grains.grain_of_vertex(b.master[0]));
+    if (a.wall >= 0 || b.wall >= 0) return a.wall == b.wall;
+    return grains.grain_of_vertex(a.master[0]) == grains.grain_of_vertex(b.master[0]);
   };
   std::size_t first = 0;  // old contact of the same vertex: both lists are sorted by it
   for (std::size_t c = 0; c < contacts.size(); ++c) {

@@ -14,18 +14,39 @@ namespace softgrain {
 std::array<double, 4> curve_weights(double xi);
 
 /// An outline vertex (the slave) against another grain's outline (the master), or against a wall. Both grains
-/// of a pair bring their vertices, so that neither outline sinks between the vertices of the other.
+/// of a pair bring their vertices, so that neither outline sinks between the vertices of the other. To a wall
+/// a vertex brings its arc (OutlineArc): it faces the wall with the place of the arc that lies lowest.
+///
+/// Gaps are those at the end of the step; the place on a master and its normal are those half-way through it,
+/// (x_start + x)/2: along a convex outline n . dx then is the change of the gap but for terms of third order,
+/// so that contact gives no energy. With the normal of the end it is more, by half the curvature times the
+/// square of the slip (docs/decisions/0026).
 struct OutlineContact {
-  int vertex = 0;               ///< the slave
-  int wall = -1;                ///< or -1
-  std::array<int, 4> master{};  ///< vertices x_0 .. x_3 of the curve that it faces, unless a wall
-  double share = 0;             ///< xi: the slave faces c(xi)
-  Vec<2> normal{};              ///< unit, from the master to the slave: the gradient of the gap
-  double gap = 0;               ///< g = (x_slave - c) . n [m], open > 0
-  double slip = 0;  ///< tangential displacement of slave against master since the start of the step [m]
+  int vertex = 0;  ///< the slave
+  int wall = -1;   ///< or -1
+  std::array<int, 4>
+      master{};      ///< vertices x_0 .. x_3 of the curve that it faces; at a wall its own, x_1 the slave
+  double share = 0;  ///< xi: the slave faces c(xi); at a wall x_1 + xi (x_2 - x_0)/2 faces the wall
+  double rise = 0;   ///< of the arc over that place, away from the wall [m]
+  Vec<2> normal{};   ///< unit, from the master to the slave: the gradient of the gap, half-way
+  double gap = 0;    ///< g = (x_slave - c) . n [m], open > 0
+  double slip = 0;   ///< tangential displacement of slave against master since the start of the step [m]
 
-  /// Weights of the master's vertices.
+  /// Weights of the master's vertices, if there is one.
   std::array<double, 4> weights() const { return curve_weights(share); }
+  /// visit(vertex, weight) for all vertices that take part: dg = n . sum weight dx.
+  template <class Visit>
+  void for_each_vertex(Visit&& visit) const {
+    visit(vertex, 1.0);
+    if (wall >= 0) {
+      if (share == 0) return;
+      visit(master[0], -share / 2);
+      visit(master[2], share / 2);
+      return;
+    }
+    const auto weight = weights();
+    for (std::size_t k = 0; k < 4; ++k) visit(master[k], -weight[k]);
+  }
 };
 
 /// Where the outlines are, and where they were at the start of the step.
@@ -63,6 +84,7 @@ class OutlineNeighbours {
 
   std::vector<Part> parts_;        // all vertices, in order
   std::vector<Vec<2>> reference_;  // positions when the candidates were found
+  std::vector<Vec<2>> half_way_;   // (x_start + x)/2 [m]
   double segment_ = 0;             // mean length of a segment of the round grains [m]
 };
 
@@ -74,7 +96,7 @@ inline Vec<2> impulse_vector(const OutlineContact& contact, const Vec<2>& impuls
   return impulse[0] * contact.normal + impulse[1] * perpendicular(contact.normal);
 }
 
-/// Displacement of the slave since the start of the step, less that of the place it faces [m].
+/// Displacement of the slave since the start of the step, less that of the place or wall that it faces [m].
 Vec<2> relative_displacement(const OutlineContact& contact, const OutlineState& state);
 
 /// Impulses of `old` contacts [N s/m], given to the new contacts of the same vertex and master grain or wall.

@@ -1,11 +1,20 @@
 #include "softgrain/mpm/topology.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "softgrain/geometry/polygon.hpp"
 
 namespace softgrain {
 namespace {
+
+/// A vertex that turns by less than this, over their number, has no arc: 2 pi for a regular polygon.
+constexpr double straight_turn = 1;
+
+/// A vertex that turns by more than this many times what one of its neighbours does is a corner without an
+/// arc.
+constexpr double corner_turn = 2;
 
 BlockPattern pattern_of(const ReferenceGrid& grid) {
   std::vector<std::array<int, 2>> edges;
@@ -27,12 +36,32 @@ CellShape shape_of(std::span<const MaterialPoint, 4> points) {
   return shape;
 }
 
+/// The arcs of a closed outline, counter-clockwise.
+std::vector<OutlineArc> arcs_of(std::span<const Vec<2>> outline) {
+  const std::size_t n = outline.size();
+  const auto at = [&](std::size_t v) { return outline[v % n]; };
+  std::vector<double> turn;
+  for (std::size_t v = 0; v < n; ++v) {
+    const Vec<2> before = at(v) - at(v + n - 1), after = at(v + 1) - at(v);
+    turn.push_back(std::atan2(-dot(before, perpendicular(after)), dot(before, after)));
+  }
+  std::vector<OutlineArc> arcs(n);
+  for (std::size_t v = 0; v < n; ++v) {
+    const double beside = std::min(turn[(v + n - 1) % n], turn[(v + 1) % n]);
+    if (turn[v] < straight_turn / static_cast<double>(n) || turn[v] > corner_turn * beside) continue;
+    const double l = norm(at(v + 1) - at(v + n - 1)) / 2;
+    arcs[v] = {.half_chord = l, .radius = l / std::sin(turn[v]), .end_sine = std::sin(turn[v] / 2)};
+  }
+  return arcs;
+}
+
 }  // namespace
 
 Topology::Topology(ReferenceGrid reference_grid)
     : grid(std::move(reference_grid)),
       points(material_points(grid)),
       node_volume(grid.nodes(), 0),
+      arc(arcs_of(grid.outline())),
       area(polygon_area(grid.outline())),
       pattern(pattern_of(grid)) {
   for (std::size_t p = 0; p < points.size(); ++p)

@@ -20,6 +20,16 @@ struct CellShape {
   std::array<double, 4> inverse_area{};  ///< 1/(4 V_p) [1/R^2] of its points
 };
 
+/// The arc that an outline vertex brings to walls: of the circle through it and its two neighbours, up to the
+/// inclination where the neighbour's arc begins. Of a regular polygon the arcs make the circle through its
+/// vertices.
+struct OutlineArc {
+  double half_chord = 0;  ///< l, half the distance of the neighbours [R]
+  double radius = 0;      ///< r = l/sin(turn), with the angle `turn` between the two segments [R]
+  double end_sine =
+      0;  ///< sin(turn/2); 0 where the outline is straight, concave or has a corner: the vertex alone
+};
+
 /// All that grains of one shape share, in units of their radius: made once, never changed.
 struct Topology {
   /// Takes over the grid; finds points, volumes, and the symbolic factorisation with the outline last.
@@ -29,6 +39,7 @@ struct Topology {
   std::vector<MaterialPoint> points;  ///< (4 cells)
   std::vector<CellShape> cell_shapes;
   std::vector<double> node_volume;  ///< (nodes) sum_p N_i V_p [R^2]: the lumped mass over rho R^2
+  std::vector<OutlineArc> arc;      ///< (outline vertices)
   double area = 0;                  ///< of the outline [R^2]
   BlockPattern pattern;
   std::vector<CellBlock>
