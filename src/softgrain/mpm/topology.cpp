@@ -1,5 +1,6 @@
 #include "softgrain/mpm/topology.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -10,6 +11,10 @@ namespace {
 
 /// A vertex that turns by less than this, over their number, has no arc: 2 pi for a regular polygon.
 constexpr double straight_turn = 1;
+
+/// A vertex that turns by more than this many times what one of its neighbours does is a corner without an
+/// arc.
+constexpr double corner_turn = 2;
 
 BlockPattern pattern_of(const ReferenceGrid& grid) {
   std::vector<std::array<int, 2>> edges;
@@ -34,11 +39,23 @@ CellShape shape_of(std::span<const MaterialPoint, 4> points) {
   return shape;
 }
 
-OutlineArc arc_of(const Vec<2>& before, const Vec<2>& at, const Vec<2>& after, double straight) {
-  const Vec<2> a = at - before, b = after - at;
-  const double turn = std::atan2(-dot(a, perpendicular(b)), dot(a, b)), l = norm(after - before) / 2;
-  if (turn < straight) return {};
-  return {.half_chord = l, .radius = l / std::sin(turn), .end_sine = std::sin(turn / 2)};
+/// The arcs of a closed outline, counter-clockwise.
+std::vector<OutlineArc> arcs_of(std::span<const Vec<2>> outline) {
+  const std::size_t n = outline.size();
+  const auto at = [&](std::size_t v) { return outline[v % n]; };
+  std::vector<double> turn;
+  for (std::size_t v = 0; v < n; ++v) {
+    const Vec<2> before = at(v) - at(v + n - 1), after = at(v + 1) - at(v);
+    turn.push_back(std::atan2(-dot(before, perpendicular(after)), dot(before, after)));
+  }
+  std::vector<OutlineArc> arcs(n);
+  for (std::size_t v = 0; v < n; ++v) {
+    const double beside = std::min(turn[(v + n - 1) % n], turn[(v + 1) % n]);
+    if (turn[v] < straight_turn / static_cast<double>(n) || turn[v] > corner_turn * beside) continue;
+    const double l = norm(at(v + 1) - at(v + n - 1)) / 2;
+    arcs[v] = {.half_chord = l, .radius = l / std::sin(turn[v]), .end_sine = std::sin(turn[v] / 2)};
+  }
+  return arcs;
 }
 
 }  // namespace
@@ -47,15 +64,11 @@ Topology::Topology(ReferenceGrid reference_grid)
     : grid(std::move(reference_grid)),
       points(material_points(grid)),
       node_volume(grid.nodes(), 0),
+      arc(arcs_of(grid.outline())),
       area(polygon_area(grid.outline())),
       pattern(pattern_of(grid)) {
   for (std::size_t p = 0; p < points.size(); ++p)
     for (int a = 0; a < 4; ++a) node_volume[grid.cell[p / 4][a]] += points[p].shape[a] * points[p].volume;
-  const auto outline = grid.outline();
-  const std::size_t n = outline.size();
-  for (std::size_t v = 0; v < n; ++v)
-    arc.push_back(arc_of(outline[(v + n - 1) % n], outline[v], outline[(v + 1) % n],
-                         straight_turn / static_cast<double>(n)));
   for (std::size_t p = 0; p < points.size(); p += 4)
     cell_shapes.push_back(shape_of(std::span(points).subspan(p).first<4>()));
   for (const auto& cell : grid.cell)

@@ -27,7 +27,8 @@ struct CellShape {
 struct OutlineArc {
   double half_chord = 0;  ///< l, half the distance of the neighbours [R]
   double radius = 0;      ///< r = l/sin(turn), with the angle `turn` between the two segments [R]
-  double end_sine = 0;    ///< sin(turn/2); 0 where the outline is straight or concave: the vertex alone
+  double end_sine =
+      0;  ///< sin(turn/2); 0 where the outline is straight, concave or has a corner: the vertex alone
 };
 
 /// All that grains of one shape share, in units of their radius: made once, never changed.

@@ -9,27 +9,14 @@
 #include <map>
 
 #include "softgrain/mpm/contact_work.hpp"
+#include "support/outlines.hpp"
 #include "support/soft_grains.hpp"
 
 using namespace softgrain;
+using test::overlapping_pair;
+using test::state_of;
 
 namespace {
-
-/// Two disks, the second finer, deformed and overlapping by about 2 %.
-SoftGrains overlapping_pair(double distance = 1.96) {
-  SoftGrains grains({test::placed(test::disk(3), 1, {0, 0}), test::placed(test::disk(5), 1, {distance, 0.1})},
-                    make_law("neo_hookean", 1, 0.3), 1);
-  for (GrainBatch& batch : grains.batches)
-    for (Vec<2, Wide>& x : batch.position) x[1] += 0.03 * x[0] * x[0];
-  return grains;
-}
-
-OutlineState state_of(const SoftGrains& grains, std::vector<Wall<2>> walls = {}) {
-  OutlineState state{.position = {}, .start = {}, .walls = std::move(walls), .dt = 1};
-  grains.gather_outline(state.position);
-  state.start = state.position;
-  return state;
-}
 
 struct Facing {
   double distance = std::numeric_limits<double>::infinity();
@@ -207,71 +194,6 @@ TEST_CASE("the curve passes through its vertices and keeps its direction there")
   }
 }
 
-TEST_CASE(
-    "a wall at any angle is at the distance of the circle through the vertices, and pushes its centre") {
-  for (const int cells : {2, 3, 4, 8, 16}) {
-    const SoftGrains grains({test::placed(test::disk(cells), 1, {0, 0})}, make_law("hencky", 1, 0.3), 1);
-    const double radius = norm(grains.node_position(0, grains.topology(0).grid.outline_begin));
-    for (int k = 0; k < 50; ++k) {
-      const double angle = 0.1 * k;
-      const Vec<2> n{std::cos(angle), std::sin(angle)};
-      const OutlineState state =
-          state_of(grains, {{.point = -(radius - 0.01) * n, .normal = n, .velocity = {}}});
-      OutlineContact lowest{.normal = {}, .gap = 1};
-      for (const OutlineContact& c : OutlineNeighbours().detect(grains, state))
-        if (c.gap < lowest.gap) lowest = c;
-      CHECK(lowest.gap == doctest::Approx(-0.01));
-      Vec<2> place;  // where the force acts
-      lowest.for_each_vertex([&](int v, double weight) { place += weight * state.position[v]; });
-      CHECK(std::abs(dot(place, perpendicular(n))) < 1e-12);
-    }
-  }
-}
-
-TEST_CASE(
-    "the gap at a wall has the gradient by which its force acts, and is concave, also of a deformed grain") {
-  const SoftGrains grains = overlapping_pair();
-  const double c = std::cos(1.0), s = std::sin(1.0);
-  OutlineState state =
-      state_of(grains, {{.point = {-0.97 * c, -0.97 * s}, .normal = {c, s}, .velocity = {}}});
-  const auto contacts = OutlineNeighbours().detect(grains, state);
-  const auto gap_of = [&](const OutlineContact& of) {
-    for (const OutlineContact& found : OutlineNeighbours().detect(grains, state))
-      if (found.vertex == of.vertex && found.wall == of.wall) return found.gap;
-    return 1e9;
-  };
-  int with_neighbours = 0;
-  for (const OutlineContact& contact : contacts) {
-    if (contact.wall < 0) continue;
-    int vertices = 0;
-    contact.for_each_vertex([&](int v, double weight) {
-      ++vertices;
-      for (int d = 0; d < 2; ++d) {
-        constexpr double h = 1e-6;
-        const Vec<2> x = state.position[v];
-        state.position[v][d] = x[d] + h;
-        const double more = gap_of(contact);
-        state.position[v][d] = x[d] - h;
-        const double less = gap_of(contact);
-        CHECK(std::abs((more - less) / (2 * h) - weight * contact.normal[d]) < 1e-7);
-        CHECK(more + less <= 2 * contact.gap + 1e-14);
-        state.position[v] = x;
-      }
-    });
-    with_neighbours += vertices == 3;
-  }
-  CHECK(with_neighbours >= 2);
-}
-
-TEST_CASE("a vertex alone meets a wall where the outline is straight") {
-  const SoftGrains grains({test::placed(test::square(4), 1, {0, 0})}, make_law("hencky", 1, 0.3), 1);
-  const OutlineState state = state_of(grains, {test::floor_at(-0.5)});
-  int straight = 0;
-  for (const OutlineContact& c : OutlineNeighbours().detect(grains, state))
-    if (c.gap < 1e-3 && std::abs(state.position[c.vertex][0]) < 0.4) straight += c.share == 0;
-  CHECK(straight == 3);
-}
-
 TEST_CASE("along a round grain contact does the work of its gap but for terms of third order in the slip") {
   const std::vector<GrainPlacement> placed{test::placed(test::disk(16), 1, {0, 0}),
                                            test::placed(test::disk(16), 1, {1.99, 0})};
@@ -293,29 +215,6 @@ TEST_CASE("along a round grain contact does the work of its gap but for terms of
       CHECK(std::abs(dot(c.normal, relative_displacement(c, state)) - opened) < 0.3 * slip * slip * slip);
     }
     CHECK(closed >= 1);
-  }
-}
-
-TEST_CASE("vertices meet walls by the distance of their arcs, and slip by their path less the wall's") {
-  const SoftGrains grains({test::placed(test::disk(4), 1, {0, 0})}, make_law("hencky", 1, 0.3), 1);
-  Wall<2> wall = test::floor_at(-0.95);
-  wall.velocity = {0.01, 0};
-  OutlineState state = state_of(grains, {wall});
-  for (Vec<2>& x : state.start) x -= Vec<2>{0.03, 0};
-  state.dt = 2;
-  const auto contacts = OutlineNeighbours().detect(grains, state);
-  const double margin = 0.5 * 2 * pi / 16;
-  for (int v = 0; v < grains.outline_size(); ++v)
-    if (state.position[v][1] + 0.95 < margin)
-      CHECK(std::ranges::count(contacts, v, &OutlineContact::vertex) == 1);
-  CHECK(contacts.size() <= 6);
-  for (const OutlineContact& c : contacts) {
-    CHECK(c.gap < margin);
-    CHECK(c.wall == 0);
-    CHECK(c.normal == Vec<2>{0, 1});
-    CHECK(c.gap <= state.position[c.vertex][1] + 0.95);
-    CHECK(c.gap == doctest::Approx(gap_now(c, state)));
-    CHECK(c.slip == doctest::Approx(-(0.03 - 2 * 0.01)));  // along e_z x n, which is -e_x
   }
 }
 
