@@ -35,7 +35,7 @@ class Scale:
 
 
 SCALES = {
-    "quick": Scale(grains=20, seeds=(1, 2, 3), cells=5, grain_cells=8, primaries=300, bpm_step="0.3 us",
+    "quick": Scale(grains=20, seeds=(1, 2, 3), cells=5, grain_cells=8, primaries=300, bpm_step="0.1 us",
                    last_packing_fraction=1.0, snapshots=12),
     "paper": Scale(grains=300, seeds=(1,), cells=16, grain_cells=16, primaries=1750, bpm_step="0.1 us",
                    last_packing_fraction=1.04, snapshots=24),
