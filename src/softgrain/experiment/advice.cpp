@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/estimate.hpp"
 
 namespace softgrain {
@@ -32,7 +33,8 @@ double rate_times_diameter(const Case& c) {
 Advice advise(const Case& c) {
   Advice advice;
   advice.time_step = first_time_step(c);
-  advice.longest_step = std::numeric_limits<double>::infinity();
+  advice.longest_step =
+      c.experiment.model == "bpm" ? critical_bond_step(c) : std::numeric_limits<double>::infinity();
   advice.stress = stress_of(c);
   advice.inertial_number = rate_times_diameter(c) * std::sqrt(c.grain.density / advice.stress);
   return advice;

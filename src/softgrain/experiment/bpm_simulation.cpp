@@ -16,8 +16,7 @@ namespace {
 /// 7).
 constexpr double link_gap = 0.05;
 
-/// Beyond this overlap, in the mean or of one contact, over the mean radius, rigid primaries have no
-/// solution. The deepest are about ten times the mean.
+/// Beyond this overlap over the mean radius, in the mean or of one contact, primaries have no solution.
 constexpr double largest_mean_overlap = 0.05, largest_overlap = 0.5;
 
 void refuse_overlaps(const StepReport& report) {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/experiment/advice.hpp"
 #include "softgrain/experiment/bpm_compaction.hpp"
 #include "softgrain/experiment/bpm_compression.hpp"
 #include "softgrain/experiment/estimate.hpp"
@@ -76,6 +77,14 @@ TEST_CASE("the period is that of the smallest primaries that a grain really has,
   const double period = 2 * std::numbers::pi * std::sqrt(m * a0 / (2 * c.bpm.exponent * c.bpm.attraction));
   CHECK(bond_period(c) == doctest::Approx(period).epsilon(0.1));
   CHECK(critical_bond_step(c) == doctest::Approx(bond_period(c) / std::numbers::pi));
+}
+
+TEST_CASE("check is told that the stable step is 7 % of the critical one, and how much a given step is") {
+  Case c;
+  CHECK(advise(c).time_step / advise(c).longest_step == doctest::Approx(std::numbers::pi / 43).epsilon(0.01));
+  c.time.step = 0.5e-6;
+  CHECK(advise(c).time_step / advise(c).longest_step ==
+        doctest::Approx(2 * std::numbers::pi / 43).epsilon(0.01));
 }
 
 TEST_CASE("a grain of 50 um and one of weak bonds are computed as well as the paper's, with no step given") {
