@@ -1,8 +1,8 @@
 #include "softgrain/experiment/advice.hpp"
 
 #include <cmath>
-#include <limits>
 
+#include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/estimate.hpp"
 
 namespace softgrain {
@@ -32,7 +32,7 @@ double rate_times_diameter(const Case& c) {
 Advice advise(const Case& c) {
   Advice advice;
   advice.time_step = first_time_step(c);
-  advice.longest_step = std::numeric_limits<double>::infinity();
+  advice.longest_step = longest_time_step(c);
   advice.stress = stress_of(c);
   advice.inertial_number = rate_times_diameter(c) * std::sqrt(c.grain.density / advice.stress);
   return advice;
