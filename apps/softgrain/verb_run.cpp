@@ -128,12 +128,12 @@ fs::path default_directory(const fs::path& case_file) {
 void refuse_another_case(const RunRequest& request, const RunPaths& paths, const std::string& name) {
   const std::string stored = read_file(paths.case_file());
   if (stored == request.case_text) return;
-  const std::string why =
-      why_no_extension(parse_case(stored, paths.case_file().string()), request.the_case);
-  require(why.empty(),
-          "{} is not the case that {} was begun with: {}; `softgrain resume {}` goes on with the stored one, -o "
-          "begins another run",
-          name, paths.root.string(), why, paths.root.string());
+  const std::string why = why_no_extension(parse_case(stored, paths.case_file().string()), request.the_case);
+  require(
+      why.empty(),
+      "{} is not the case that {} was begun with: {}; `softgrain resume {}` goes on with the stored one, -o "
+      "begins another run",
+      name, paths.root.string(), why, paths.root.string());
 }
 
 void run_case(const RunArguments& arguments) {
@@ -183,8 +183,8 @@ void add_run_verb(CLI::App& app) {
   run->add_option("-o,--output", arguments->options.directory,
                   "directory (default: CASE without .toml, with _run)")
       ->type_name("DIR");
-  auto* resume =
-      run->add_flag("--resume", arguments->resume, "go on from the newest intact snapshot, if there is one; also to a later end");
+  auto* resume = run->add_flag("--resume", arguments->resume,
+                               "go on from the newest intact snapshot, if there is one; also to a later end");
   run->add_flag("--force", arguments->force,
                 "replace an earlier run's results; begin even where memory or disk seem too small")
       ->excludes(resume);
@@ -193,7 +193,8 @@ void add_run_verb(CLI::App& app) {
       "Examples:\n"
       "  softgrain run squeeze/case.toml                    into squeeze/case_run\n"
       "  softgrain run case.toml --set contact.friction=0.3 -o friction -j 4\n"
-      "  softgrain run case.toml -o out --resume --set loading.max_strain=0.5      a finished run goes further\n"
+      "  softgrain run case.toml -o out --resume --set loading.max_strain=0.5      a finished run goes "
+      "further\n"
       "  softgrain run case.toml -o out --resume --stop-after \"23 h\"    in a queue: exit code 75 asks to "
       "come again\n"
       "\nCtrl-C: finish the step, write a snapshot, exit 130. SIGTERM, SIGUSR2, SIGHUP: the same, exit 75. "

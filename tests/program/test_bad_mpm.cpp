@@ -54,14 +54,35 @@ TEST_CASE("soft grains that cannot be are refused with the key, the value and wh
   }
 }
 
+TEST_CASE("an explicit step beyond the stable one is refused, with the stable one and the remedy") {
+  const TemporaryDirectory directory;
+  const std::string explicit_ = "mpm.integrator=\"explicit\"",
+                    lagrangian = "mpm.formulation=\"updated_lagrangian\"";
+  for (const std::vector<std::string>& settings : std::vector<std::vector<std::string>>{
+           {explicit_, "mpm.time_step=\"1.2 us\""},
+           {explicit_, "mpm.time_step=\"10 ms\""},
+           {lagrangian, "experiment.loading=\"diametral\"", "mpm.time_step=\"30 us\""},
+       }) {
+    const ProcessResult result = run_box(directory, settings);
+    CAPTURE(result.err);
+    CHECK(result.exit_code == 2);
+    CHECK(result.err.find("mpm.time_step ") != std::string::npos);
+    CHECK(result.err.find("is beyond the longest stable step of an explicit run of this case, ") !=
+          std::string::npos);
+    CHECK(result.err.find("give at most that, or 0 for the default") != std::string::npos);
+    CHECK_FALSE(fs::exists(directory.path() / "out" / "run.json"));
+  }
+}
+
 TEST_CASE(
-    "an explicit step that is too long ends with exit code 3, the grain's name and an intact snapshot") {
+    "a lid that is too fast for an explicit step ends with exit code 3, its name and an intact snapshot") {
   const TemporaryDirectory directory;
   const ProcessResult result =
-      run_box(directory, {"mpm.integrator=\"explicit\"", "mpm.time_step=\"1.2 us\""});
+      run_box(directory, {"mpm.integrator=\"explicit\"", "loading.wall_velocity=\"1e5 m/s\""});
+  CAPTURE(result.err);
   CHECK(result.exit_code == 3);
-  CHECK(result.err.find("a material point of grain ") != std::string::npos);
-  CHECK(result.err.find("use a smaller time step") != std::string::npos);
+  CHECK(result.err.find("wall 1 moves by ") != std::string::npos);
+  CHECK(result.err.find("use a smaller time step or a slower wall") != std::string::npos);
   CHECK(result.err.find("the last good state is out/snap/s0000") != std::string::npos);
   const ProcessResult verified =
       softgrain::test::run({SOFTGRAIN_PROGRAM, "verify", "out"}, {}, directory.path().string());

@@ -25,24 +25,26 @@ struct Breakdown {
 const Words fast_plate{"loading.wall_velocity=\"1e5 m/s\"", "loading.unload_at=[]"};
 
 const std::vector<Breakdown> breakdowns{
-    // steps too long: points inverted, velocities without bound
+    // walls too fast
     {"compaction-mpm",
-     {"mpm.integrator=\"explicit\"", "mpm.time_step=\"2 us\""},
+     {"mpm.integrator=\"explicit\"", "mpm.time_step=0", "loading.wall_velocity=\"500 m/s\"",
+      "loading.unload_at=[]"},
      {"turned inside out", "use a smaller time step"}},
+    {"compaction-mpm",
+     {"mpm.integrator=\"explicit\"", "mpm.time_step=0", "loading.wall_velocity=\"1e5 m/s\"",
+      "loading.unload_at=[]"},
+     {"step 1: wall 1 moves by", "use a smaller time step"}},
     {"diametral-mpm",
-     {"mpm.formulation=\"updated_lagrangian\"", "mpm.time_step=\"30 us\"", "contact.friction=0",
-      "contact.wall_friction=0"},
-     {"turned inside out", "use a smaller time step"}},
-    {"compaction-mpm",
-     {"mpm.integrator=\"explicit\"", "mpm.time_step=\"4 us\"", "mpm.law=\"small_strain_hooke\""},
-     {"grain ", "use a smaller time step"}},
+     {"mpm.formulation=\"updated_lagrangian\"", "mpm.time_step=0", "loading.wall_velocity=\"1e5 m/s\"",
+      "loading.unload_at=[]"},
+     {"step 1: wall 1 moves by", "use a smaller time step"}},
     // laws that do not resist inversion
     {"diametral-mpm",
      {"mpm.law=\"st_venant_kirchhoff\"", "loading.unload_at=[]", "loading.max_strain=1.2"},
      {"turned inside out in grain 0"}},
     {"diametral-mpm",
      {"mpm.law=\"st_venant_kirchhoff\"", "loading.unload_at=[]", "loading.max_strain=1.2",
-      "mpm.integrator=\"explicit\"", "loading.wall_velocity=\"10 m/s\""},
+      "mpm.integrator=\"explicit\"", "mpm.time_step=0", "loading.wall_velocity=\"10 m/s\""},
      {"grain 0 is turned inside out"}},
     {"diametral-bpm", {"contact.friction=1e300"}, {"step 1: the velocity of particle 0 is not finite"}},
     {"diametral-mpm", fast_plate, {"step 1: no step", "halved 8 times", "than half a grain in grain 0"}},

@@ -46,7 +46,8 @@ TEST_CASE("a run that goes further can be stopped and resumed on the way") {
   const std::string name = "diametral-bpm";
   REQUIRE(run_tiny(workshop, ending_at(name, "0.1"), "whole").exit_code == 0);
   REQUIRE(run_tiny(workshop, ending_at(name, "0.0771"), "parts").exit_code == 0);
-  CHECK(run_tiny(workshop, ending_at(name, "0.1"), "parts", {"--resume", "--stop-after", "1 ms"}).exit_code == 75);
+  CHECK(run_tiny(workshop, ending_at(name, "0.1"), "parts", {"--resume", "--stop-after", "1 ms"}).exit_code ==
+        75);
   CHECK(workshop.softgrain({"resume", "parts", "-q"}).exit_code == 0);
   CHECK(workshop.last_hash("parts") == workshop.last_hash("whole"));
 }
@@ -62,8 +63,10 @@ TEST_CASE("what is not the same case with a later end is refused, with the key")
     return refused.err;
   };
   CHECK(refusal("0.07", {}).find("its end was further away") != std::string::npos);
-  CHECK(refusal("0.1", {"mpm.poisson_ratio=0.3"}).find("mpm.poisson_ratio was 0.45, not 0.3") != std::string::npos);
-  CHECK(refusal("0.1", {"loading.max_stress=\"1 MPa\""}).find("its end was further away") != std::string::npos);
+  CHECK(refusal("0.1", {"mpm.poisson_ratio=0.3"}).find("mpm.poisson_ratio was 0.45, not 0.3") !=
+        std::string::npos);
+  CHECK(refusal("0.1", {"loading.max_stress=\"1 MPa\""}).find("its end was further away") !=
+        std::string::npos);
   CHECK(workshop.last_hash("out") == hash);
 
   REQUIRE(run_tiny(workshop, ending_at(name, "0.08", {"loading.hold=\"1 ms\""}), "rested").exit_code == 0);

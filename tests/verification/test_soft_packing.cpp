@@ -125,7 +125,7 @@ TEST_CASE("twenty soft grains are compacted to 98 % without crossing, alike by b
   check_outlines(implicit);
   CHECK(implicit.rejected <= 3);
   const Compaction explicit_ =
-      compact<ExplicitDynamics>(ExplicitOptions{.damping_time = 0.6e-7}, 1.2e-7, last, mark);
+      compact<ExplicitDynamics>(ExplicitOptions{.damping_share = 0.5}, 1.2e-7, last, mark);
   check_outlines(explicit_);
   CHECK(std::abs(implicit.phi_of_mark - explicit_.phi_of_mark) < 0.005);
   CHECK(implicit.stress_of_mark == doctest::Approx(explicit_.stress_of_mark).epsilon(0.1));

@@ -1,9 +1,9 @@
 #include "softgrain/experiment/advice.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "softgrain/experiment/bpm_step.hpp"
+#include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/estimate.hpp"
 
 namespace softgrain {
@@ -33,8 +33,7 @@ double rate_times_diameter(const Case& c) {
 Advice advise(const Case& c) {
   Advice advice;
   advice.time_step = first_time_step(c);
-  advice.longest_step =
-      c.experiment.model == "bpm" ? critical_bond_step(c) : std::numeric_limits<double>::infinity();
+  advice.longest_step = c.experiment.model == "bpm" ? critical_bond_step(c) : longest_time_step(c);
   advice.stress = stress_of(c);
   advice.inertial_number = rate_times_diameter(c) * std::sqrt(c.grain.density / advice.stress);
   return advice;

@@ -40,6 +40,7 @@ struct Case {
     std::string contact_on = "outline";            ///< updated_lagrangian: or "grid_nodes"
     double time_step = 0;  ///< dt [s]; 0: the plate moves 1 % of the smallest R (implicit), stable (explicit)
     double tolerance = 1e-4;  ///< largest last correction of Newton's method, over the mean grain radius
+    double damping = 0;       ///< zeta [1/s] of f = -zeta m (v - v_walls)
   } mpm;
 
   struct Contact {

@@ -28,6 +28,7 @@ Case twin_of(Case c) {
 }  // namespace
 
 void check_case(const Case& c) {
+  check_time_step(c);
   const bool bpm = c.experiment.model == "bpm";
   if (estimate(c).particles <= (bpm ? few_primaries : few_points)) {
     create_simulation(c);

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/diametral_path.hpp"
 #include "softgrain/experiment/isotropic_path.hpp"
 #include "softgrain/experiment/mpm_simulation.hpp"
@@ -10,6 +12,9 @@
 
 namespace softgrain {
 namespace {
+
+/// Of an explicit step: the mesh's own vibrations are damped.
+constexpr double damping_share = 0.5;
 
 /// What both integrators need: grains and walls.
 struct MpmSetup {
@@ -43,6 +48,10 @@ MpmSetup setup_of(const Case& c) {
   return setup;
 }
 
+SoftGrains grains_of(const Case& c, std::vector<GrainPlacement> placed) {
+  return {std::move(placed), make_law(c.mpm.law, c.mpm.young_modulus, c.mpm.poisson_ratio), c.grain.density};
+}
+
 WallDrive drive_of(const Case& c, const std::vector<Wall<2>>& walls, double dt) {
   if (c.experiment.loading == "diametral")
     return {c.loading, std::make_unique<DiametralPath>(c.loading, c.grain.radius, dt), dt};
@@ -51,19 +60,44 @@ WallDrive drive_of(const Case& c, const std::vector<Wall<2>>& walls, double dt) 
 
 }  // namespace
 
+double longest_time_step(const Case& c) {
+  constexpr double no_limit = std::numeric_limits<double>::infinity();
+  if (c.experiment.model != "mpm") return no_limit;
+  if (c.mpm.formulation == "updated_lagrangian") return UpdatedLagrangianSimulation::longest_time_step(c);
+  if (c.mpm.integrator != "explicit") return no_limit;
+  const double radius = c.experiment.loading == "diametral" ? c.grain.radius : c.sample.smallest_diameter / 2;
+  const SoftGrains smallest =
+      grains_of(c, {{.topology = std::make_shared<const Topology>(disk_grid(c.mpm.cells)),
+                     .radius = radius,
+                     .centre = {},
+                     .angle = 0,
+                     .velocity = {}}});
+  return longest_stable_step(smallest, damping_share);
+}
+
+void check_time_step(const Case& c) {
+  if (c.mpm.time_step == 0 || c.experiment.model != "mpm") return;
+  const double longest = longest_time_step(c);
+  require(c.mpm.time_step <= longest,
+          "mpm.time_step {:.4g} us is beyond the longest stable step of an explicit run of this case, "
+          "{:.4g} us; give at most that, or 0 for the default",
+          1e6 * c.mpm.time_step, 1e6 * longest);
+}
+
 std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
+  check_time_step(c);
   if (c.mpm.formulation == "updated_lagrangian") return std::make_unique<UpdatedLagrangianSimulation>(c);
   MpmSetup setup = setup_of(c);
   double smallest = setup.grains.front().radius;
   for (const GrainPlacement& grain : setup.grains) smallest = std::min(smallest, grain.radius);
-  SoftGrains grains(std::move(setup.grains), make_law(c.mpm.law, c.mpm.young_modulus, c.mpm.poisson_ratio),
-                    c.grain.density);
+  SoftGrains grains = grains_of(c, std::move(setup.grains));
   if (c.mpm.integrator == "implicit") {
     // the lid goes down by 1 % of the smallest radius, at most, in a step
     const double dt = c.mpm.time_step > 0 ? c.mpm.time_step : 0.01 * smallest / c.loading.wall_velocity;
     ImplicitOptions options{.tolerance = c.mpm.tolerance,
                             .friction = c.contact.friction,
-                            .wall_friction = c.contact.wall_friction};
+                            .wall_friction = c.contact.wall_friction,
+                            .damping = c.mpm.damping};
     WallDrive drive = drive_of(c, setup.walls, dt);
     return std::make_unique<MpmSimulation<ImplicitDynamics>>(
         ImplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(drive), dt);
@@ -71,8 +105,10 @@ std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
   require(c.mpm.integrator == "explicit", "mpm.integrator must be 'implicit' or 'explicit', got '{}'",
           c.mpm.integrator);
   const double dt = c.mpm.time_step > 0 ? c.mpm.time_step : stable_time_step(grains);
-  ExplicitOptions options{
-      .damping_time = 0.5 * dt, .friction = c.contact.friction, .wall_friction = c.contact.wall_friction};
+  ExplicitOptions options{.damping_share = damping_share,
+                          .friction = c.contact.friction,
+                          .wall_friction = c.contact.wall_friction,
+                          .damping = c.mpm.damping};
   WallDrive drive = drive_of(c, setup.walls, dt);
   return std::make_unique<MpmSimulation<ExplicitDynamics>>(
       ExplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(drive), dt);

@@ -8,6 +8,7 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/experiment/arrays.hpp"
+#include "softgrain/experiment/stable_step_state.hpp"
 #include "softgrain/geometry/polygon.hpp"
 #include "softgrain/math/tensor.hpp"
 #include "softgrain/mpm/equilibrium.hpp"
@@ -39,7 +40,6 @@ int runaway_grain(const SoftGrains& grains, double dt) {
 
 /// Of the last correction of Newton's method.
 double residual_limit(const ImplicitOptions& options) { return options.tolerance; }
-double residual_limit(const ExplicitOptions&) { return 0; }
 
 }  // namespace
 
@@ -78,7 +78,7 @@ StepReport MpmSimulation<Dynamics>::step() {
   }
   return {.contacts = soft.contacts,
           .sweeps = soft.sweeps,
-          .residual_mean = soft.residual,
+          .residual_mean = soft.residual_mean > 0 ? soft.residual_mean : soft.residual,
           .residual_max = soft.residual,
           .residual_limit = residual_limit(dynamics_.options),
           .overlap_mean = 0,
@@ -118,15 +118,17 @@ std::vector<Quantity> MpmSimulation<Dynamics>::energies() const {
   const WorkBudget& work = dynamics_.work;
   const double kinetic = dynamics_.grains.kinetic_energy(), elastic = stored_energy();
   const double by_integration = work.internal + work.inertia - elastic;
-  return {{"kinetic_energy", "J/m", kinetic},
-          {"elastic_energy", "J/m", elastic},
-          {"wall_work", "J/m", work.walls},
-          {"dissipation", "J/m", work.contacts + by_integration},
-          {"dissipation_contact", "J/m", work.contacts},
-          {"dissipation_friction", "J/m", work.friction},
-          {"dissipation_integration", "J/m", by_integration},
-          {"energy_error", "J/m",
-           work.walls + work.gravity - kinetic - work.internal - work.inertia - work.contacts}};
+  return {
+      {"kinetic_energy", "J/m", kinetic},
+      {"elastic_energy", "J/m", elastic},
+      {"wall_work", "J/m", work.walls},
+      {"dissipation", "J/m", work.contacts + by_integration + work.damping},
+      {"dissipation_contact", "J/m", work.contacts},
+      {"dissipation_friction", "J/m", work.friction},
+      {"dissipation_integration", "J/m", by_integration},
+      {"dissipation_damping", "J/m", work.damping},
+      {"energy_error", "J/m",
+       work.walls + work.gravity - kinetic - work.internal - work.inertia - work.contacts - work.damping}};
 }
 
 template <class Dynamics>
@@ -216,10 +218,12 @@ Checkpoint MpmSimulation<Dynamics>::checkpoint() const {
   state.arrays["wall_point"] = to_array<2>(wall_point);
   const WorkBudget& work = dynamics_.work;
   std::vector<double> sums(sums_.impulse.begin(), sums_.impulse.end());
-  sums.insert(sums.end(), {sums_.duration, sums_.iterations, sums_.rejected, drive_.state.stress,
-                           static_cast<double>(drive_.state.ended), dynamics_.impulse_time, work.walls,
-                           work.gravity, work.internal, work.contacts, work.inertia, work.friction});
+  sums.insert(sums.end(),
+              {sums_.duration, sums_.iterations, sums_.rejected, drive_.state.stress,
+               static_cast<double>(drive_.state.ended), dynamics_.impulse_time, work.walls, work.gravity,
+               work.internal, work.contacts, work.inertia, work.friction, work.damping});
   state.arrays["sums"] = {1, std::move(sums)};
+  if constexpr (std::is_same_v<Dynamics, ExplicitDynamics>) save_stable_step(dynamics_.stable, state);
   drive_.save(state);
   return state;
 }
@@ -269,8 +273,8 @@ void MpmSimulation<Dynamics>::restore(const Checkpoint& state) {
   std::vector<Vec<2>> wall_point(dynamics_.walls.size());
   from_array<2>(state, "wall_point", wall_point);
   for (std::size_t w = 0; w < wall_point.size(); ++w) dynamics_.walls[w].point = wall_point[w];
-  std::vector<Vec<1>> sums(16);
-  from_array<1>(state, "sums", sums, 15);  // 0.1.0 before its release knew no work of friction
+  std::vector<Vec<1>> sums(17);
+  from_array<1>(state, "sums", sums, 15);  // before work of friction, or of damping, was counted
   for (std::size_t w = 0; w < 4; ++w) sums_.impulse[w] = sums[w][0];
   sums_.duration = sums[4][0];
   sums_.iterations = sums[5][0];
@@ -284,7 +288,9 @@ void MpmSimulation<Dynamics>::restore(const Checkpoint& state) {
                     .internal = sums[12][0],
                     .contacts = sums[13][0],
                     .friction = sums[15][0],
-                    .inertia = sums[14][0]};
+                    .inertia = sums[14][0],
+                    .damping = sums[16][0]};
+  if constexpr (std::is_same_v<Dynamics, ExplicitDynamics>) dynamics_.stable = restored_stable_step(state);
   step_ = state.step;
 }
 

@@ -29,12 +29,16 @@ ContactOn contact_of(const std::string& name) {
   return ContactOn::grid_nodes;
 }
 
+double cell_of(const Case& c) {
+  return c.grain.radius * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;  // 14 cells^2 points, 4 to a cell
+}
+
 UpdatedLagrangianDynamics dynamics_of(const Case& c) {
   require(c.experiment.loading == "diametral",
           "mpm.formulation 'updated_lagrangian' needs experiment.loading 'diametral', got '{}'",
           c.experiment.loading);
   const double R = c.grain.radius;
-  const double cell = R * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;  // 14 cells^2 points, 4 to a cell
+  const double cell = cell_of(c);
   PointGrain grain = disk_of_points(R, {}, cell, 8 * c.mpm.cells);
   double reach = 0;  // the outline is symmetric about both axes
   for (const Vec<2>& x : grain.outline) reach = std::max(reach, x[1]);
@@ -47,7 +51,8 @@ UpdatedLagrangianDynamics dynamics_of(const Case& c) {
            .contact_on = contact_of(c.mpm.contact_on),
            .cell = cell,
            .friction = c.contact.friction,
-           .wall_friction = c.contact.wall_friction}};
+           .wall_friction = c.contact.wall_friction,
+           .damping = c.mpm.damping}};
 }
 
 double time_step_of(const Case& c, const UpdatedLagrangianDynamics& dynamics) {
@@ -76,6 +81,11 @@ UpdatedLagrangianSimulation::UpdatedLagrangianSimulation(const Case& c)
       path_(std::make_unique<DiametralPath>(c.loading, c.grain.radius, dt_)),
       height_start_(plate_distance()) {}
 
+double UpdatedLagrangianSimulation::longest_time_step(const Case& c) {
+  return stable_time_step(make_law(c.mpm.law, c.mpm.young_modulus, c.mpm.poisson_ratio), c.grain.density,
+                          cell_of(c), 0.2 * (1 + 1e-9));
+}
+
 double UpdatedLagrangianSimulation::plate_distance() const {
   return dynamics_.walls[top_wall].point[1] - dynamics_.walls[bottom_wall].point[1];
 }
@@ -91,11 +101,11 @@ StepReport UpdatedLagrangianSimulation::step() {
   sums_.force_bottom -= dynamics_.wall_impulse(bottom_wall)[1];
   sums_.force_top += dynamics_.wall_impulse(top_wall)[1];
   sums_.duration += dt_;
-  sums_.wall_work -= dot(dynamics_.wall_impulse(top_wall), dynamics_.walls[top_wall].velocity);
   return {.contacts = soft.contacts,
           .sweeps = soft.sweeps,
-          .residual_mean = soft.residual,
+          .residual_mean = soft.residual_mean,
           .residual_max = soft.residual,
+          .residual_limit = dynamics_.options.solver.worst_factor * dynamics_.options.solver.tolerance,
           .overlap_mean = 0,
           .overlap_max = soft.penetration_max,
           .converged = soft.converged};
@@ -110,6 +120,8 @@ std::vector<Quantity> UpdatedLagrangianSimulation::observe() {
   const double duration = sums_.duration > 0 ? sums_.duration : dt_;
   const double force_bottom = sums_.force_bottom / duration, force_top = sums_.force_top / duration;
   const double kinetic = grain().kinetic_energy(dynamics_.density), elastic = dynamics_.elastic_energy();
+  const WorkBudget& work = dynamics_.work;
+  const double by_integration = work.internal - elastic;
   sums_.force_bottom = sums_.force_top = sums_.duration = 0;
   return {
       {"step", "", static_cast<double>(step_)},
@@ -127,8 +139,13 @@ std::vector<Quantity> UpdatedLagrangianSimulation::observe() {
       {"least_J", "", least_J},
       {"kinetic_energy", "J/m", kinetic},
       {"elastic_energy", "J/m", elastic},
-      {"wall_work", "J/m", sums_.wall_work},
-      {"dissipation", "J/m", sums_.wall_work - kinetic - elastic},
+      {"wall_work", "J/m", work.walls},
+      {"dissipation", "J/m", work.contacts + by_integration + work.damping},
+      {"dissipation_contact", "J/m", work.contacts},
+      {"dissipation_friction", "J/m", work.friction},
+      {"dissipation_integration", "J/m", by_integration},
+      {"dissipation_damping", "J/m", work.damping},
+      {"energy_error", "J/m", work.walls - kinetic - work.internal - work.contacts - work.damping},
   };
 }
 
@@ -193,8 +210,10 @@ Checkpoint UpdatedLagrangianSimulation::checkpoint() const {
   state.arrays["outline"] = to_array<2>(grain().outline);
   const std::vector<Vec<2>> points{dynamics_.walls[bottom_wall].point, dynamics_.walls[top_wall].point};
   state.arrays["wall_point"] = to_array<2>(points);
+  const WorkBudget& work = dynamics_.work;
   state.arrays["sums"] = {
-      1, std::vector<double>{sums_.force_bottom, sums_.force_top, sums_.duration, sums_.wall_work}};
+      1, std::vector<double>{sums_.force_bottom, sums_.force_top, sums_.duration, work.walls, work.internal,
+                             work.contacts, work.friction, work.damping}};
   return state;
 }
 
@@ -202,7 +221,7 @@ void UpdatedLagrangianSimulation::restore(const Checkpoint& state) {
   PointGrain& grain = dynamics_.grains.front();
   std::vector<Vec<4>> F(grain.F.size());
   std::vector<Vec<2>> wall_point(2);
-  std::vector<Vec<1>> sums(4);
+  std::vector<Vec<1>> sums(8);
   from_array<2>(state, "position", grain.position);
   from_array<2>(state, "velocity", grain.velocity);
   from_array<4>(state, "deformation_gradient", F);
@@ -211,7 +230,12 @@ void UpdatedLagrangianSimulation::restore(const Checkpoint& state) {
   from_array<1>(state, "sums", sums);
   for (std::size_t p = 0; p < F.size(); ++p) grain.F[p] = {F[p].c};
   for (const BoxWall w : {bottom_wall, top_wall}) dynamics_.walls[w].point = wall_point[w];
-  sums_ = {sums[0][0], sums[1][0], sums[2][0], sums[3][0]};
+  sums_ = {sums[0][0], sums[1][0], sums[2][0]};
+  dynamics_.work = {.walls = sums[3][0],
+                    .internal = sums[4][0],
+                    .contacts = sums[5][0],
+                    .friction = sums[6][0],
+                    .damping = sums[7][0]};
   step_ = state.step;
 }
 

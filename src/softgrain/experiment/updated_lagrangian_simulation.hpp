@@ -15,6 +15,9 @@ class UpdatedLagrangianSimulation final : public Simulation {
  public:
   explicit UpdatedLagrangianSimulation(const Case& the_case);
 
+  /// [s]
+  static double longest_time_step(const Case& the_case);
+
   bool finished() const override { return step_ >= path_->steps(); }
   double progress() const override {
     return static_cast<double>(step_) / static_cast<double>(path_->steps());
@@ -33,11 +36,10 @@ class UpdatedLagrangianSimulation final : public Simulation {
   void restore(const Checkpoint& checkpoint) override;
 
  private:
-  /// What is summed between two rows, or over the run; saved with a checkpoint.
+  /// What is summed between two rows; saved with a checkpoint.
   struct Sums {
     double force_bottom = 0, force_top = 0;  ///< impulses since the last row [N s/m]
     double duration = 0;                     ///< since the last row [s]
-    double wall_work = 0;                    ///< over the run [J/m]
   };
   const PointGrain& grain() const { return dynamics_.grains.front(); }
   double plate_distance() const;

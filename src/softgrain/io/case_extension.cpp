@@ -21,11 +21,13 @@ std::string why_no_extension(const Case& begun, const Case& wanted) {
     const bool is_end = key.name == "loading.max_strain" || key.name == "loading.max_packing_fraction" ||
                         key.name == "loading.max_stress";
     if (!is_end)
-      return fmt::format("{} was {}, not {}", key.name, written_value(begun, key), written_value(wanted, key));
+      return fmt::format("{} was {}, not {}", key.name, written_value(begun, key),
+                         written_value(wanted, key));
     end_moved = true;
   }
   const Case::Loading &before = begun.loading, &now = wanted.loading;
-  if (now.max_strain < before.max_strain || !is_further(now.max_packing_fraction, before.max_packing_fraction) ||
+  if (now.max_strain < before.max_strain ||
+      !is_further(now.max_packing_fraction, before.max_packing_fraction) ||
       !is_further(now.max_stress, before.max_stress))
     return "its end was further away";
   if (end_moved && before.hold > 0)

@@ -5,8 +5,8 @@
 
 namespace softgrain {
 
-/// Why a run that was begun with one case cannot go on with another; "" if it can: only its end has moved further
-/// away (loading.max_strain, max_packing_fraction, max_stress), or its output is another.
+/// Why a run that was begun with one case cannot go on with another; "" if it can: only its end has moved
+/// further away (loading.max_strain, max_packing_fraction, max_stress), or its output is another.
 std::string why_no_extension(const Case& begun, const Case& wanted);
 
 }  // namespace softgrain

@@ -40,8 +40,8 @@ class RunRecorder final : public Recorder {
   /// Writes the first state.
   void begin(Simulation& simulation);
   /// Restores the newest snapshot that is intact and returns the report up to it; says which ones it skipped
-  /// and why. A run that has ended goes further if the case is an extension (why_no_extension) of the one it was
-  /// begun with, from the snapshot before its end. Raises IoError when none is intact.
+  /// and why. A run that has ended goes further if the case is an extension (why_no_extension) of the one it
+  /// was begun with, from the snapshot before its end. Raises IoError when none is intact.
   RunReport resume(Simulation& simulation);
   bool after_step(Simulation& simulation, const StepReport& step, RunReport& run) override;
 

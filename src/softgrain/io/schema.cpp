@@ -74,7 +74,11 @@ std::vector<Key> all_keys() {
       KEY(mpm.contact_on, "", one_of({"outline", "grid_nodes"}),
           "where contact acts; total_lagrangian: on the outline only", updated_lagrangian),
       KEY(mpm.time_step, "us", at_least(0),
-          "time step; 0: the plate moves 1 % of the smallest radius (implicit), or the stable step (explicit)", with_mpm),
+          "time step; 0: the plate moves 1 % of the smallest radius (implicit), or a stable step (explicit, which "
+          "divides steps while cells need it, and refuses a longer one than is stable at the start)", with_mpm),
+      KEY(mpm.damping, "1/s", at_least(0),
+          "rate zeta of the damping f = -zeta m (v - v_walls), v_walls the velocity that the walls give to what lies "
+          "between them; 0: none; a free grain slows down by exp(-zeta t)", with_mpm),
       KEY(mpm.tolerance, "", positive(), "largest last correction of Newton's method over the mean grain radius", implicit),
 
       KEY(contact.friction, "", at_least(0),

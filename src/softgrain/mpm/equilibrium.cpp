@@ -149,9 +149,6 @@ unsigned add_forces(const Law& law, const GrainBatch& batch, WideVectors& force)
   return inverted.lanes();
 }
 
-/// The ten blocks K_ab, b <= a, of a cell.
-using CellStiffness = std::array<std::array<Wide, 4>, 10>;
-
 /// K_ab += V g_a . A . g_b
 void add_point_stiffness(const Mat<4, Wide>& A, const MaterialPoint& point, CellStiffness& K) {
   int pair = 0;
@@ -237,21 +234,28 @@ unsigned internal_force(const SoftGrains& grains, const GrainBatch& batch, WideV
   return std::visit([&](const auto& law) { return add_forces(law, batch, force); }, grains.law);
 }
 
-void add_stiffness(const SoftGrains& grains, const GrainBatch& batch, BatchedCholesky& matrix) {
+void for_each_cell_stiffness(const SoftGrains& grains, const GrainBatch& batch,
+                             const std::function<void(int cell, const CellStiffness& K)>& visit) {
   std::visit(
       [&]<class Law>(const Law& law) {
         for_each_cell(law, batch, [&](int cell, const CellState& state) {
           CellStiffness K{};
           cell_stiffness(law, state, K);
           if (!Law::objective) turn(placed_rotation(batch), K);
-          for (int pair = 0; pair < 10; ++pair) {
-            const CellBlock& to = batch.topology->cell_blocks[10 * cell + pair];
-            const auto& k = K[pair];
-            matrix.add_block(to.block, to.transposed ? std::array<Wide, 4>{k[0], k[2], k[1], k[3]} : k);
-          }
+          visit(cell, K);
         });
       },
       grains.law);
+}
+
+void add_stiffness(const SoftGrains& grains, const GrainBatch& batch, BatchedCholesky& matrix) {
+  for_each_cell_stiffness(grains, batch, [&](int cell, const CellStiffness& K) {
+    for (int pair = 0; pair < 10; ++pair) {
+      const CellBlock& to = batch.topology->cell_blocks[10 * cell + pair];
+      const auto& k = K[pair];
+      matrix.add_block(to.block, to.transposed ? std::array<Wide, 4>{k[0], k[2], k[1], k[3]} : k);
+    }
+  });
 }
 
 Wide elastic_energy(const SoftGrains& grains, const GrainBatch& batch) {

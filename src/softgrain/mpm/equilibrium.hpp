@@ -1,4 +1,7 @@
 #pragma once
+#include <array>
+#include <functional>
+
 #include "softgrain/math/block_cholesky.hpp"
 #include "softgrain/mpm/soft_grains.hpp"
 
@@ -10,6 +13,13 @@ namespace softgrain {
 /// (mean dilatation). X lies as the grain was placed, so that F = 1 there. Overwrites `force` (nodes).
 /// Returns the lanes in which some point has det F <= 0, whatever the law: bit l; their force is void.
 unsigned internal_force(const SoftGrains& grains, const GrainBatch& batch, WideVectors& force);
+
+/// The ten blocks K_ab, b <= a, of a cell, from a = 0 on; a block is row by row [Pa].
+using CellStiffness = std::array<std::array<Wide, 4>, 10>;
+
+/// visit(cell, its tangent stiffness) for all cells of the eight grains.
+void for_each_cell_stiffness(const SoftGrains& grains, const GrainBatch& batch,
+                             const std::function<void(int cell, const CellStiffness& K)>& visit);
 
 /// Adds the tangent stiffness K_ij = df_i/dx_j = sum_p V_p dN_i/dX . dP/dF . dN_j/dX [Pa], and what
 /// the mean over the cell adds, to the matrix.

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <variant>
 
 #include "softgrain/contact/nlgs.hpp"
 #include "softgrain/core/error.hpp"
@@ -21,6 +19,17 @@ constexpr double contact_margin = 0.1;
 /// Contacts that a thread takes at once.
 constexpr int contacts_at_once = 256;
 
+/// Sub-steps between two looks at the cells: fewer after a change of the stable step by more than half of
+/// what it lies above the sub-step, more after one by less than an eighth of that.
+constexpr int fewest_between_looks = 16, most_between_looks = 256;
+constexpr double much = 0.5, little = 0.125;
+
+/// Share of the stable step that is taken, since cells change between two looks.
+constexpr double share_taken = 0.97;
+
+/// A step that needs more sub-steps than this has crushed cells.
+constexpr double most_sub_steps = 2000;
+
 Vec<2> lane_of(const Vec<2, Wide>& v, int lane) { return {v[0][lane], v[1][lane]}; }
 
 }  // namespace
@@ -29,6 +38,7 @@ ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
                                    const ExplicitOptions& explicit_options)
     : grains(std::move(soft_grains)), walls(std::move(plates)), options(explicit_options) {
   require(grains.size() > 0, "there is no grain");
+  require(options.damping >= 0, "damping must be >= 0, got {} 1/s", options.damping);
   require(options.friction >= 0 && options.wall_friction >= 0, "friction must be >= 0, got {} and {}",
           options.friction, options.wall_friction);
   smallest_radius_ = grains.radius(0);
@@ -47,6 +57,43 @@ ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
 }
 
 SoftStepReport ExplicitDynamics::step(double dt) {
+  SoftStepReport report{.converged = true};
+  wall_impulse_.assign(walls.size(), {});
+  double rest = dt;
+  while (rest > 0) {
+    if (stable.until_look == 0) look_at_cells(rest);
+    --stable.until_look;
+    const double count = sub_steps(rest);
+    if (!(count <= most_sub_steps))
+      throw NumericalError(
+          fmt::format("cells are crushed: the stable step has fallen to {:.3g} s, {:.0f} times less than the "
+                      "time step; stop at a smaller strain",
+                      stable.longest, dt / stable.longest));
+    sub_step(rest / count, report);
+    rest = count > 1 ? rest - rest / count : 0;
+  }
+  return report;
+}
+
+double ExplicitDynamics::sub_steps(double dt) const {
+  return std::max(1.0, std::ceil(dt / (share_taken * stable.longest) * (1 - 1e-12)));
+}
+
+void ExplicitDynamics::look_at_cells(double dt) {
+  const double longest = longest_stable_step(grains, options.damping_share);
+  const double change = std::abs(longest - stable.longest);
+  stable.longest = longest;
+  const double margin = longest - dt / sub_steps(dt);
+  if (change > much * margin)
+    stable.between_looks = std::max(fewest_between_looks, stable.between_looks / 2);
+  else if (change < little * margin)
+    stable.between_looks = std::min(most_between_looks, 2 * stable.between_looks);
+  stable.until_look = stable.between_looks;
+}
+
+void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
+  check_wall_motion(walls, dt, smallest_radius_);
+  damping_ = {options.damping, dt, walls};
   // contacts where x + dt v will be
   fly_outline(dt);
   for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
@@ -54,6 +101,8 @@ SoftStepReport ExplicitDynamics::step(double dt) {
   outline_.dt = dt;
   std::vector<OutlineContact> found = neighbours_.detect(grains, outline_, contact_margin);
   impulse = carried_impulses(grains, contacts, impulse, found);
+  if (impulse_time > 0 && impulse_time != dt)
+    for (Vec<2>& p : impulse) p *= dt / impulse_time;  // the same force
   contacts = std::move(found);
 
   LumpedContacts system(contacts, outline_, outline_velocity_, inverse_mass_, lumped_scratch_);
@@ -67,12 +116,15 @@ SoftStepReport ExplicitDynamics::step(double dt) {
   const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction, solver);
   impulse_time = dt;
   drift_outline(dt);
-
-  SoftStepReport report{.iterations = 1, .sweeps = solved.sweeps, .converged = solved.converged};
-  for (const Vec<2>& p : impulse) report.contacts += p[0] != 0;
-  report.penetration_max = penetration_max();
   add_contact_work(dt);
-  return report;
+
+  ++report.iterations;
+  report.sweeps += solved.sweeps;
+  report.residual_mean = std::max(report.residual_mean, solved.residual_mean);
+  report.residual = std::max(report.residual, solved.residual_max);
+  report.converged = report.converged && solved.converged;
+  report.contacts = static_cast<int>(std::ranges::count_if(impulse, [](auto& p) { return p[0] != 0; }));
+  report.penetration_max = std::max(report.penetration_max, penetration_max());
 }
 
 /// Where the outlines are, and where they would be after dt without forces.
@@ -93,9 +145,9 @@ void ExplicitDynamics::kick(double dt) {
   parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
     thread_local WideVectors force;  // of this batch only: it stays in the processor's cache
     GrainBatch& batch = grains.batches[b];
-    if (options.damping_time > 0)
+    if (options.damping_share > 0)
       for (std::size_t i = 0; i < batch.position.size(); ++i)
-        batch.position[i] += Wide(options.damping_time) * batch.velocity[i];
+        batch.position[i] += Wide(options.damping_share * dt) * batch.velocity[i];
     inverted[b] = batch.grain_in(internal_force(grains, batch, force));
     if (inverted[b] >= 0) return;
     kick_batch(dt, force, batch, batch_step_[b]);
@@ -119,16 +171,19 @@ void ExplicitDynamics::kick_batch(double dt, const WideVectors& force, GrainBatc
   const int outline_begin = topology.grid.outline_begin;
   step.force.assign(force.begin() + outline_begin, force.end());
   step.velocity.assign(batch.velocity.begin() + outline_begin, batch.velocity.end());
-  step.internal = step.gravity = 0.0;
+  step.internal = step.gravity = step.damping = 0.0;
   const Wide scale = Wide(dt) / (grains.density * (batch.radius * batch.radius));
   for (int i = 0; i < topology.grid.nodes(); ++i) {
     const Vec<2, Wide> v = batch.velocity[i];
     const Wide rate = scale * Wide(1 / topology.node_volume[i]);
     for (int d = 0; d < 2; ++d) batch.velocity[i][d] += dt * options.gravity[d] - rate * force[i][d];
-    batch.position[i] -= Wide(options.damping_time) * v;
+    batch.position[i] -= Wide(options.damping_share * dt) * v;
+    Vec<2, Wide> damped{};
+    if (options.damping > 0) batch.velocity[i] += damped = damping_.velocity_change(batch.position[i], v);
     if (i >= outline_begin) continue;
     batch.position[i] += Wide(dt) * batch.velocity[i];
     step.add_work(force[i], weight(batch, i), Wide(dt / 2) * (v + batch.velocity[i]));
+    step.damping -= grains.node_mass(batch, i) * (0.5 * dot(damped, v + batch.velocity[i]));
   }
 }
 
@@ -143,8 +198,12 @@ void ExplicitDynamics::drift_outline(double dt) {
     });
     const ReferenceGrid& grid = batch.topology->grid;
     for (int i = grid.outline_begin, k = 0; i < grid.nodes(); ++i, ++k) {
+      const Vec<2, Wide> twice = step.velocity[k] + batch.velocity[i];
+      if (options.damping > 0)
+        step.damping -= grains.node_mass(batch, i) *
+                        (0.5 * dot(damping_.velocity_change(batch.position[i], step.velocity[k]), twice));
       batch.position[i] += Wide(dt) * batch.velocity[i];
-      step.add_work(step.force[k], weight(batch, i), Wide(dt / 2) * (step.velocity[k] + batch.velocity[i]));
+      step.add_work(step.force[k], weight(batch, i), Wide(dt / 2) * twice);
     }
     grains.for_each_vertex(
         batch, [&](int v, int i, int lane) { outline_.position[v] = lane_of(batch.position[i], lane); });
@@ -153,6 +212,7 @@ void ExplicitDynamics::drift_outline(double dt) {
     for (int lane = 0; lane < Wide::size && grains.batches[b].grain[lane] >= 0; ++lane) {
       work.internal += batch_step_[b].internal[lane];
       work.gravity += batch_step_[b].gravity[lane];
+      work.damping += batch_step_[b].damping[lane];
     }
 }
 
@@ -170,22 +230,7 @@ double ExplicitDynamics::penetration_max() const {
 void ExplicitDynamics::add_contact_work(double dt) {
   for (std::size_t v = 0; v < outline_velocity_.size(); ++v)  // moved by (v+ + v)/2 dt
     outline_.position[v] = outline_.start[v] + dt / 2 * (outline_velocity_[v] + outline_velocity_start_[v]);
-  wall_impulse_.assign(walls.size(), {});
   softgrain::add_contact_work(contacts, impulse, outline_, work, wall_impulse_);
-}
-
-double stable_time_step(const SoftGrains& grains, double safety) {
-  double shortest = std::numeric_limits<double>::infinity();
-  for (int g = 0; g < grains.size(); ++g) {
-    const ReferenceGrid& grid = grains.topology(g).grid;
-    for (const auto& cell : grid.cell)
-      for (int a = 0; a < 4; ++a)
-        shortest =
-            std::min(shortest, grains.radius(g) * norm(grid.node[cell[a]] - grid.node[cell[(a + 1) % 4]]));
-  }
-  const double speed =
-      std::visit([&](const auto& law) { return law.wave_speed(grains.density); }, grains.law);
-  return safety * shortest / speed;
 }
 
 }  // namespace softgrain

@@ -6,17 +6,32 @@
 #include "softgrain/mpm/outline_contacts.hpp"
 #include "softgrain/mpm/soft_grains.hpp"
 #include "softgrain/mpm/soft_step_report.hpp"
+#include "softgrain/mpm/stable_step.hpp"
+#include "softgrain/mpm/wall_motion.hpp"
 
 namespace softgrain {
 
 struct ExplicitOptions {
-  double damping_time =
-      0;  ///< tau [s]: internal forces are taken at x + tau v, which damps the mesh's own vibrations
+  /// beta: internal forces are taken at x + beta dt v, which damps the mesh's own vibrations
+  double damping_share = 0;
   SolverOptions solver{
       .max_sweeps = 200, .tolerance = 4.5e-6, .relaxation = 1.4};  ///< NLGS; in units of mean radius / dt
   double friction = 0;
   double wall_friction = 0;
-  Vec<2> gravity{};  ///< [m/s^2]
+  Vec<2> gravity{};    ///< [m/s^2]
+  double damping = 0;  ///< zeta [1/s], see MassDamping
+};
+
+/// That SoftStepReport::residual has to reach: of the worst contact.
+inline double residual_limit(const ExplicitOptions& options) {
+  return options.solver.worst_factor * options.solver.tolerance;
+}
+
+/// What is known of the longest stable step; saved with a checkpoint.
+struct StableStep {
+  double longest = 0;  ///< [s] when the cells were last looked at
+  int until_look = 0;  ///< sub-steps until they are again
+  int between_looks = 16;
 };
 
 /// Soft grains between walls by symplectic Euler with contact dynamics, on the same data as ImplicitDynamics:
@@ -28,8 +43,9 @@ class ExplicitDynamics {
   ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
                    const ExplicitOptions& explicit_options);
 
-  /// One step of dt, which must be stable (stable_time_step). Raises NumericalError, naming the grain, if a
-  /// point is inverted.
+  /// One step of dt, in equal sub-steps of at most longest_stable_step: cells are looked at again every so
+  /// many of them, more often while they change. Raises NumericalError if a point is inverted or cells are so
+  /// deformed that thousands of sub-steps would be needed, naming the grain, and as check_wall_motion.
   SoftStepReport step(double dt);
 
   const Vec<2>& wall_impulse(int wall) const { return wall_impulse_[wall]; }
@@ -42,12 +58,13 @@ class ExplicitDynamics {
   std::vector<Vec<2>> impulse;
   double impulse_time = 0;  ///< the step over which they acted [s]
   WorkBudget work;          ///< since the start; there is no `inertia`
+  StableStep stable;
 
  private:
   /// Of a batch: its outline's nodes at the start of the step, and the work over the step.
   struct BatchStep {
     WideVectors force, velocity;
-    Wide internal = 0.0, gravity = 0.0;
+    Wide internal = 0.0, gravity = 0.0, damping = 0.0;
 
     void add_work(const Vec<2, Wide>& internal_force, const Vec<2, Wide>& weight, const Vec<2, Wide>& moved) {
       internal += dot(internal_force, moved);
@@ -55,6 +72,9 @@ class ExplicitDynamics {
     }
   };
   Vec<2, Wide> weight(const GrainBatch& batch, int node) const;
+  void look_at_cells(double dt);
+  double sub_steps(double dt) const;
+  void sub_step(double dt, SoftStepReport& report);
   void fly_outline(double dt);
   void kick(double dt);
   void kick_batch(double dt, const WideVectors& force, GrainBatch& batch, BatchStep& step) const;
@@ -70,10 +90,7 @@ class ExplicitDynamics {
   std::vector<Vec<2>> wall_impulse_;
   LumpedContacts::Scratch lumped_scratch_;
   std::vector<BatchStep> batch_step_;
+  MassDamping damping_;
 };
-
-/// A stable step [s]: `safety` times the smallest distance of two nodes of a cell over the wave speed of
-/// unstrained material.
-double stable_time_step(const SoftGrains& grains, double safety = 0.5);
 
 }  // namespace softgrain

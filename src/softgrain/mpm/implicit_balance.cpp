@@ -24,9 +24,10 @@ void ImplicitDynamics::balance_momentum(double dt) {
     for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
       const Wide m = grains.node_mass(batch, i);
       mass += m;
+      const Vec<2, Wide> flight = flight_velocity(b, i);
       for (int d = 0; d < 2; ++d)
-        sum[d] += dt * (missing[i][d] + m * Wide(options.gravity[d])) -
-                  m * (batch.velocity[i][d] - velocity_start_[b][i][d]);
+        sum[d] +=
+            dt * (missing[i][d] + m * Wide(options.gravity[d])) - m * (batch.velocity[i][d] - flight[d]);
     }
     for (Vec<2, Wide>& v : batch.velocity) v += (1.0 / mass) * sum;
   });
@@ -34,18 +35,20 @@ void ImplicitDynamics::balance_momentum(double dt) {
 
 void ImplicitDynamics::add_work() {
   struct Share {
-    Wide internal = 0.0, inertia = 0.0, gravity = 0.0;
+    Wide internal = 0.0, inertia = 0.0, gravity = 0.0, damping = 0.0;
   };
   std::vector<Share> shares(grains.batches.size());
   parallel_for(batches(), [&](int b) {
     const GrainBatch& batch = grains.batches[b];
-    auto& [internal, inertia, gravity] = shares[b];
+    auto& [internal, inertia, gravity, damping] = shares[b];
     for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
       const Wide m = grains.node_mass(batch, i);
       const Vec<2, Wide> moved = batch.position[i] - start_[b][i];
       const Vec<2, Wide> dv = batch.velocity[i] - velocity_start_[b][i];
       internal += dot(force_[b][i], moved);
       inertia += 0.5 * m * dot(dv, dv);
+      if (options.damping > 0)  // - f . dx = m (v_n - flight)/dt . dx
+        damping += m * Wide(1 / outline_.dt) * dot(velocity_start_[b][i] - flight_velocity(b, i), moved);
       gravity += m * (options.gravity[0] * moved[0] + options.gravity[1] * moved[1]);
     }
   });
@@ -54,6 +57,7 @@ void ImplicitDynamics::add_work() {
       work.internal += shares[b].internal[lane];
       work.inertia += shares[b].inertia[lane];
       work.gravity += shares[b].gravity[lane];
+      work.damping += shares[b].damping[lane];
     }
   add_contact_work(contacts, impulse, outline_, work, wall_impulse_);
 }

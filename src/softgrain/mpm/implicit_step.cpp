@@ -8,7 +8,7 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/mpm/equilibrium.hpp"
-#include "softgrain/mpm/explicit_step.hpp"
+#include "softgrain/mpm/stable_step.hpp"
 
 namespace softgrain {
 namespace {
@@ -84,6 +84,7 @@ void ImplicitDynamics::give_up(Failure failure, double dt) const {
 ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& report) {
   grains.gather_outline(outline_.start);
   walls_start_ = walls;
+  damping_ = {options.damping, dt, walls};
   contacts_start_ = contacts;
   impulse_start_ = impulse;
   if (impulse_time > 0)
@@ -92,7 +93,8 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
     GrainBatch& batch = grains.batches[b];
     start_[b] = batch.position;
     velocity_start_[b] = batch.velocity;
-    for (std::size_t i = 0; i < batch.position.size(); ++i) batch.position[i] += Wide(dt) * batch.velocity[i];
+    for (std::size_t i = 0; i < batch.position.size(); ++i)
+      batch.position[i] += Wide(dt) * flight_velocity(b, i);
   });
   for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
   outline_.walls = walls;
@@ -162,9 +164,9 @@ ImplicitDynamics::Failure ImplicitDynamics::residual(double dt) {
     WideVectors& r = force_[b];
     for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
       const Wide m = grains.node_mass(batch, i), rate = m * Wide(1 / (dt * dt));
+      const Vec<2, Wide> flight = flight_velocity(b, i);
       for (int d = 0; d < 2; ++d) {
-        const Wide inertia =
-            rate * (batch.position[i][d] - start_[b][i][d] - Wide(dt) * velocity_start_[b][i][d]);
+        const Wide inertia = rate * (batch.position[i][d] - start_[b][i][d] - Wide(dt) * flight[d]);
         r[i][d] = m * Wide(options.gravity[d]) - r[i][d] - inertia;
       }
     }

@@ -9,6 +9,7 @@
 #include "softgrain/mpm/outline_contacts.hpp"
 #include "softgrain/mpm/soft_grains.hpp"
 #include "softgrain/mpm/soft_step_report.hpp"
+#include "softgrain/mpm/wall_motion.hpp"
 
 namespace softgrain {
 
@@ -28,10 +29,12 @@ struct ImplicitOptions {
   double friction = 0;                      ///< mu between grains
   double wall_friction = 0;                 ///< mu against walls
   Vec<2> gravity{};                         ///< [m/s^2]
+  double damping = 0;                       ///< zeta [1/s], see MassDamping
 };
 
 /// Soft grains between walls by backward Euler with position-level contact (docs/theory.md, implicit MPM):
 ///   M (x - x_n - dt v_n)/dt^2 + f_int(x) = f_ext + H p/dt,   v = (x - x_n)/dt,
+/// (f_ext: gravity and damping, which is that of v_n),
 ///   0 <= g(x) _|_ p_n >= 0,  |p_t| <= mu p_n.
 /// Newton's method detects contacts anew in every iteration; A = M/dt^2 + K + proximal term is factored once
 /// a step, and again where Newton's method needs many iterations; each grain follows the secant of its last
@@ -71,6 +74,11 @@ class ImplicitDynamics {
   void catch_problem(double dt);
   Failure finish(double dt, SoftStepReport& report);
   void balance_momentum(double dt);
+  /// v_n and what damping changes of it, of a node of a batch.
+  Vec<2, Wide> flight_velocity(std::size_t b, std::size_t i) const {
+    const Vec<2, Wide>& v = velocity_start_[b][i];
+    return options.damping > 0 ? v + damping_.velocity_change(start_[b][i], v) : v;
+  }
   void add_work();
   void take_back();
   [[noreturn]] void give_up(Failure failure, double dt) const;
@@ -94,6 +102,7 @@ class ImplicitDynamics {
   std::vector<Vec<2>> impulse_start_;
   std::vector<Vec<2>> wall_impulse_;
   int failed_grain_ = -1;
+  MassDamping damping_;
 };
 
 }  // namespace softgrain

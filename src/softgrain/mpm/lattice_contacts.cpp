@@ -103,6 +103,12 @@ Vec<2> LatticeContacts::relative_velocity(int contact) const {
   return {dot(c.normal, u) + c.gap_rate, dot(perpendicular(c.normal), u)};
 }
 
+Vec<2> LatticeContacts::combined(int contact, std::span<const Vec<2>> node_velocity) const {
+  Vec<2> sum;
+  for (const NodeWeight& w : weights_of(contact)) sum += w.weight * node_velocity[w.node];
+  return sum;
+}
+
 void LatticeContacts::apply_impulse(int contact, const Vec<2>& dp) {
   const Vec<2>& n = contacts_[contact].normal;
   const Vec<2> P = dp[0] * n + dp[1] * perpendicular(n);

@@ -37,6 +37,8 @@ class LatticeContacts {
   }
   Vec<2> relative_velocity(int contact) const;
   void apply_impulse(int contact, const Vec<2>& dp);
+  /// sum_i w_i v_i of any velocities of the nodes [m/s].
+  Vec<2> combined(int contact, std::span<const Vec<2>> node_velocity) const;
 
  private:
   std::span<const NodeWeight> weights_of(int contact) const {

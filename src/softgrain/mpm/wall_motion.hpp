@@ -1,0 +1,44 @@
+#pragma once
+#include <cmath>
+#include <span>
+
+#include "softgrain/geometry/wall.hpp"
+
+namespace softgrain {
+
+/// Raises NumericalError if a wall goes further in dt [s] than half the smallest radius [m], or not by a
+/// number, or if walls that face each other have met: no grain is left between them.
+void check_wall_motion(std::span<const Wall<2>> walls, double dt, double smallest_radius);
+
+/// The velocity that walls give to what lies between them, linear from each to the one that it faces:
+///   v_d(x) = v_d + r_d (x_d - o_d), d = 1, 2; zero where no two walls along the axes face each other.
+struct AffineMotion {
+  Vec<2> origin, velocity, rate;  // o [m], v [m/s], r [1/s]
+
+  explicit AffineMotion(std::span<const Wall<2>> walls);
+  /// v(x) [m/s]; T is double or Wide.
+  template <class T>
+  Vec<2, T> at(const Vec<2, T>& x) const {
+    return {velocity[0] + rate[0] * (x[0] - origin[0]), velocity[1] + rate[1] * (x[1] - origin[1])};
+  }
+};
+
+/// What damping by mass does in a step: f = -zeta m (v - v_walls(x)) with the velocities at its start, so
+/// weakened that a free grain slows down by exp(-zeta dt) whatever dt,
+///   dt f/m = -(1 - exp(-zeta dt)) (v - v_walls(x)).
+struct MassDamping {
+  double share = 0;  ///< 1 - exp(-zeta dt)
+  AffineMotion walls{{}};
+
+  MassDamping() = default;
+  /// rate: zeta [1/s]; walls at the start of the step.
+  MassDamping(double rate, double dt, std::span<const Wall<2>> at_start)
+      : share(-std::expm1(-rate * dt)), walls(rate > 0 ? AffineMotion(at_start) : AffineMotion({})) {}
+  /// dt f/m [m/s]
+  template <class T>
+  Vec<2, T> velocity_change(const Vec<2, T>& x, const Vec<2, T>& v) const {
+    return T(-share) * (v - walls.at(x));
+  }
+};
+
+}  // namespace softgrain
