@@ -46,6 +46,15 @@ double skin_of(const BpmSample& sample) {
   return skin_share * *std::min_element(sample.mean_distance.begin(), sample.mean_distance.end());
 }
 
+/// Mass of a sixteenth of a full box; the damper takes up the waves of a material as stiff as its bonds, ten
+/// times sigma_I.
+PlateBody bonded_plates(const Case& c, double height) {
+  const double wave_speed = std::sqrt(10 * c.bpm.cohesive_pressure / c.grain.density);
+  return {.mass = c.grain.density * height / 16,
+          .damper = c.grain.density * wave_speed,
+          .patience = height / wave_speed};
+}
+
 }  // namespace
 
 BpmCompaction::BpmCompaction(const Case& c) : BpmCompaction(c, sample_box(c)) {}
@@ -58,7 +67,9 @@ BpmCompaction::BpmCompaction(const Case& c, BoxSample box, BpmSample sample)
                     friction_rule(c, sample.particles.grain), skin_of(sample)),
       box_(std::move(box)),
       begin_(std::move(sample.begin)),
-      displaced_(sample.displaced) {}
+      displaced_(sample.displaced) {
+  drive_.plates = bonded_plates(c, plate_distance());
+}
 
 void BpmCompaction::judge(const StepReport& report) {
   const double dt = case_.time.step;

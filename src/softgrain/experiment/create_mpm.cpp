@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <variant>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/create.hpp"
@@ -52,10 +53,36 @@ SoftGrains grains_of(const Case& c, std::vector<GrainPlacement> placed) {
   return {std::move(placed), make_law(c.mpm.law, c.mpm.young_modulus, c.mpm.poisson_ratio), c.grain.density};
 }
 
-WallDrive drive_of(const Case& c, const std::vector<Wall<2>>& walls, double dt) {
+WallDrive drive_of(const Case& c, double height, double dt) {
   if (c.experiment.loading == "diametral")
     return {c.loading, std::make_unique<DiametralPath>(c.loading, c.grain.radius, dt), dt};
-  return {c.loading, box_path(c, walls[top_wall].point[1] - walls[bottom_wall].point[1], dt), dt};
+  return {c.loading, box_path(c, height, dt), dt};
+}
+
+/// Speed of pressure waves in a grain [m/s].
+double wave_speed(const SoftGrains& grains) {
+  return std::visit([&](const auto& law) { return law.wave_speed(grains.density); }, grains.law);
+}
+
+/// The damper takes up the waves that come to a plate, Z = rho c; as far as backward Euler's steps, longer
+/// than a wave needs through the box, do not damp them anyway.
+PlateBody implicit_plates(const SoftGrains& grains, double height, double dt) {
+  const double c = wave_speed(grains);
+  return {.damper = grains.density * c * std::max(0.0, 1 - c * dt / height)};
+}
+
+/// The mass is that of an eighth of a full box: less, and the stress of a step shakes the plate.
+PlateBody explicit_plates(const SoftGrains& grains, double height) {
+  const double c = wave_speed(grains);
+  return {.mass = grains.density * height / 8, .damper = grains.density * c, .patience = height / c};
+}
+
+/// Of Newton's method, so that what it leaves of a stress that is kept is small.
+double tolerance_of(const Case& c, const SoftGrains& grains, double height) {
+  if (c.loading.hold_stress == 0) return c.mpm.tolerance;
+  constexpr double share = 0.01;  // of the stress
+  const double wave = wave_speed(grains), modulus = grains.density * wave * wave;
+  return std::min(c.mpm.tolerance, share * c.loading.hold_stress / modulus * height / grains.radius(0));
 }
 
 }  // namespace
@@ -91,14 +118,16 @@ std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
   double smallest = setup.grains.front().radius;
   for (const GrainPlacement& grain : setup.grains) smallest = std::min(smallest, grain.radius);
   SoftGrains grains = grains_of(c, std::move(setup.grains));
+  const double height = setup.walls[top_wall].point[1] - setup.walls[bottom_wall].point[1];
   if (c.mpm.integrator == "implicit") {
     // the lid goes down by 1 % of the smallest radius, at most, in a step
     const double dt = c.mpm.time_step > 0 ? c.mpm.time_step : 0.01 * smallest / c.loading.wall_velocity;
-    ImplicitOptions options{.tolerance = c.mpm.tolerance,
+    ImplicitOptions options{.tolerance = tolerance_of(c, grains, height),
                             .friction = c.contact.friction,
                             .wall_friction = c.contact.wall_friction,
                             .damping = c.mpm.damping};
-    WallDrive drive = drive_of(c, setup.walls, dt);
+    WallDrive drive = drive_of(c, height, dt);
+    drive.plates = implicit_plates(grains, height, dt);
     return std::make_unique<MpmSimulation<ImplicitDynamics>>(
         ImplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(drive), dt);
   }
@@ -109,7 +138,8 @@ std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
                           .friction = c.contact.friction,
                           .wall_friction = c.contact.wall_friction,
                           .damping = c.mpm.damping};
-  WallDrive drive = drive_of(c, setup.walls, dt);
+  WallDrive drive = drive_of(c, height, dt);
+  drive.plates = explicit_plates(grains, height);
   return std::make_unique<MpmSimulation<ExplicitDynamics>>(
       ExplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(drive), dt);
 }

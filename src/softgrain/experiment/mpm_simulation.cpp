@@ -8,6 +8,7 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/experiment/arrays.hpp"
+#include "softgrain/experiment/speed_search.hpp"
 #include "softgrain/experiment/stable_step_state.hpp"
 #include "softgrain/geometry/polygon.hpp"
 #include "softgrain/math/tensor.hpp"
@@ -19,6 +20,9 @@ namespace {
 
 /// Beyond this root mean square of a grain's motion in a step, over its radius, the step was far too long.
 constexpr double largest_motion = 0.5;
+
+/// Of a stress that is kept: so far from it the search for the speed of the plates ends.
+constexpr double stress_accuracy = 2e-3;
 
 /// First grain that moves further than that in dt, or not by a number; -1 if none does.
 int runaway_grain(const SoftGrains& grains, double dt) {
@@ -59,10 +63,9 @@ double MpmSimulation<Dynamics>::box_width() const {
 
 template <class Dynamics>
 StepReport MpmSimulation<Dynamics>::step() {
-  const double approach = drive_.approach_speed(step_, height_start_ - plate_distance());
-  for (int w = 0; w < static_cast<int>(dynamics_.walls.size()); ++w)
-    dynamics_.walls[w].velocity = drive_.velocity(dynamics_.walls[w], w, approach);
-  const SoftStepReport soft = dynamics_.step(dt_);
+  const double limit = std::is_same_v<Dynamics, ImplicitDynamics> ? drive_.stress_limit(step_) : 0;
+  const SoftStepReport soft =
+      limit > 0 ? step_under(limit) : step_at(drive_.approach_speed(step_, height_start_ - plate_distance()));
   if (const int grain = runaway_grain(dynamics_.grains, dt_); grain >= 0)
     throw NumericalError(
         fmt::format("grain {} moves by more than half its radius in a step; use a smaller time step", grain));
@@ -72,10 +75,7 @@ StepReport MpmSimulation<Dynamics>::step() {
   sums_.duration += dt_;
   sums_.iterations += soft.iterations;
   sums_.rejected += soft.rejected;
-  if (box()) {
-    const double force = dynamics_.wall_impulse(top_wall)[1] - dynamics_.wall_impulse(bottom_wall)[1];
-    drive_.watch(force / (2 * dt_ * box_width()), plate_distance(), step_);
-  }
+  if (box()) drive_.watch(box_stress(), plate_distance(), step_);
   return {.contacts = soft.contacts,
           .sweeps = soft.sweeps,
           .residual_mean = soft.residual_mean > 0 ? soft.residual_mean : soft.residual,
@@ -84,6 +84,46 @@ StepReport MpmSimulation<Dynamics>::step() {
           .overlap_mean = 0,
           .overlap_max = soft.penetration_max,
           .converged = soft.converged};
+}
+
+/// Of the last step: the mean of lid and bottom [Pa].
+template <class Dynamics>
+double MpmSimulation<Dynamics>::box_stress() const {
+  const double force = dynamics_.wall_impulse(top_wall)[1] - dynamics_.wall_impulse(bottom_wall)[1];
+  return force / (2 * dt_ * box_width());
+}
+
+template <class Dynamics>
+SoftStepReport MpmSimulation<Dynamics>::step_at(double approach_speed) {
+  for (int w = 0; w < static_cast<int>(dynamics_.walls.size()); ++w)
+    dynamics_.walls[w].velocity = drive_.velocity(dynamics_.walls[w], w, approach_speed);
+  return dynamics_.step(dt_);
+}
+
+/// A step of plates that bear at most sigma_h. Before they hold it, they go their way unless they would bear
+/// more; then, and from there on, they go at the speed v, sought by trial and error, at which
+///   sigma(v) + Z v = sigma_h,  |v| <= loading.wall_velocity.
+template <class Dynamics>
+SoftStepReport MpmSimulation<Dynamics>::step_under(double sigma_h) {
+  const Dynamics start = dynamics_;
+  const auto excess_at = [&](double v, SoftStepReport& report) {
+    report = step_at(v);
+    return box_stress() + drive_.plates.damper * v - sigma_h;
+  };
+  SoftStepReport report;
+  SpeedSearch search(drive_.largest_speed(), stress_accuracy * sigma_h, drive_.state.slope);
+  double v = drive_.approach_speed(step_, height_start_ - plate_distance());
+  double excess = excess_at(v, report);
+  if (!drive_.holds() && excess < drive_.plates.damper * v) return report;  // sigma < sigma_h
+  while (!search.found(v, excess)) {
+    v = search.next();
+    dynamics_ = Dynamics(start);
+    excess = excess_at(v, report);
+  }
+  if (!drive_.holds()) drive_.begin_hold(step_ + 1);
+  drive_.state.speed = v;
+  drive_.state.slope = search.slope();
+  return report;
 }
 
 template <class Dynamics>

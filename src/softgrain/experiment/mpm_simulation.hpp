@@ -49,6 +49,9 @@ class MpmSimulation final : public Simulation {
     double duration = 0;                  ///< since the last row [s]
     double iterations = 0, rejected = 0;  ///< since the last row; over the run
   };
+  double box_stress() const;
+  SoftStepReport step_at(double approach_speed);
+  SoftStepReport step_under(double stress);
   bool box() const { return dynamics_.walls.size() > 2; }
   double plate_distance() const;
   double box_width() const;

@@ -188,6 +188,8 @@ TEST_CASE("a packing is compacted until its primaries are close packed, whole, a
   CHECK(simulation.steps_done() < simulation.steps_planned());
   CHECK(simulation.early_end().find(
             "random close packing, and overlap by more than 0.0005 of their radius") != std::string::npos);
+  CHECK_FALSE(simulation.outcome().completed);
+  CHECK(simulation.outcome().shortfall.find("before loading.max_strain") != std::string::npos);
   auto row = row_of(simulation);
   CHECK(row["solid_fraction"] > 0.82);
   CHECK(row["solid_fraction"] < 0.9);
@@ -235,6 +237,7 @@ TEST_CASE("an overlap that is asked for ends a compaction before the close packi
   }
   CHECK(overlap >= 2e-5);
   CHECK(simulation.early_end() == "loading.max_overlap is reached");
+  CHECK(simulation.outcome().completed);
   auto row = row_of(simulation);
   CHECK(row["dissipation_friction"] == 0);
   CHECK(row["dissipation_rearrangement"] > 0);

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "softgrain/core/error.hpp"
@@ -68,11 +69,13 @@ TEST_CASE(
   CHECK(IsotropicPath(loading, side, dt, 0.6).leg(1 << 30) == 4);
 }
 
-TEST_CASE("a lid that keeps a stress brings back what is lost of it, exponentially") {
+TEST_CASE("a lid that keeps a stress brings back what is lost of it, as its damper and the spring say") {
   const Case::Loading loading{
       .wall_velocity = v, .max_strain = 0.3, .unload_at = {}, .hold = 3e-3, .hold_stress = target};
   WallDrive drive = drive_of(loading);
-  Spring spring{.stiffness = 10 * target, .loss = 0.5 * target};
+  drive.plates = {
+      .mass = 10, .damper = 2e6, .patience = 1};  // of seconds: it lends nothing, waits for nothing
+  Spring spring{.stiffness = 10 * target, .loss = 0.3 * target};
   double progress = 0;
   const auto advance = [&] {
     spring.advance(drive);
@@ -80,25 +83,27 @@ TEST_CASE("a lid that keeps a stress brings back what is lost of it, exponential
     progress = drive.progress(spring.step);
   };
   while (drive.state.hold_start < 0) advance();
-  CHECK(spring.stress == doctest::Approx(target).epsilon(0.02));  // ahead of its mean over 0.1 % of strain
+  CHECK(spring.stress == doctest::Approx(target).epsilon(2e-3));  // its mean over 0.1 % of strain lags by 1 %
   CHECK(drive.at_turning_point(spring.step));
   CHECK(drive.leg(spring.step - 1) == 0);
   CHECK(drive.leg(spring.step) == 1);
   CHECK(drive.early_end(spring.step).empty());
-  for (int step = 0; step < 0.2e-3 / dt; ++step) advance();
+  for (int step = 0; step < 0.1e-3 / dt; ++step) advance();  // 20 times m/Z
   const double lack = target - spring.stress;
   const double height = spring.height;
   const std::int64_t start = spring.step;
-  CHECK(lack > 0.3 * target);
+  CHECK(lack > 0.2 * target);
   while (target - spring.stress > lack / 4) advance();
-  // d(stress)/dt = K v/h (1 - stress/target)
-  const double rate = spring.stiffness * v / ((height + spring.height) / 2 * target);
+  // d(stress)/dt = K v/h, v = (target - stress)/Z
+  const double rate = spring.stiffness / ((height + spring.height) / 2 * drive.plates.damper);
   CHECK(rate * dt * static_cast<double>(spring.step - start) == doctest::Approx(std::log(4)).epsilon(0.01));
   while (!drive.finished(spring.step)) advance();
   CHECK(spring.step - drive.state.hold_start == std::llround(loading.hold / dt));
   CHECK(progress == 1);
   CHECK(spring.step < drive.steps_planned());
-  CHECK(drive.early_end(spring.step) == "loading.hold_stress was kept for loading.hold");
+  CHECK(drive.early_end(spring.step).starts_with("loading.hold_stress was kept for loading.hold"));
+  CHECK(drive.outcome(spring.step).completed);
+  CHECK(drive.outcome(spring.step).shortfall.empty());
 }
 
 TEST_CASE("a lid that keeps a stress moves at the speed of loading at most, both ways") {
@@ -106,10 +111,57 @@ TEST_CASE("a lid that keeps a stress moves at the speed of loading at most, both
       .wall_velocity = v, .max_strain = 0.3, .unload_at = {}, .hold = 3e-3, .hold_stress = target};
   for (const bool lost : {true, false}) {
     WallDrive drive = drive_of(loading);
+    drive.plates = {.mass = 10, .damper = 1e5, .patience = 1};
     Spring spring{.stiffness = 10 * target, .loss = (lost ? 5 : -5) * target};
     while (drive.state.hold_start < 0) spring.advance(drive);
     for (int step = 0; step < 1000; ++step) spring.advance(drive);
-    CHECK(-drive.approach_speed(spring.step, side - spring.height) == doctest::Approx(lost ? -v : v));
+    CHECK(drive.approach_speed(spring.step, side - spring.height) == doctest::Approx(lost ? v : -v));
+  }
+}
+
+TEST_CASE("a stress that is not kept is told with its figures, and the path is not complete") {
+  const Case::Loading loading{
+      .wall_velocity = v, .max_strain = 0.3, .unload_at = {}, .hold = 0.2e-3, .hold_stress = target};
+  WallDrive drive = drive_of(loading);
+  std::int64_t step = 0;
+  while (drive.state.hold_start < 0) drive.watch(target, side, ++step);
+  while (!drive.finished(step)) {
+    drive.watch(step / 500 % 2 == 0 ? 3 * target : 0, side, step + 1);
+    ++step;
+  }
+  CHECK_FALSE(drive.outcome(step).completed);
+  CHECK(drive.early_end(step).find("not kept") != std::string::npos);
+  // 500 steps of 3, 500 of 0
+  CHECK(drive.state.held.mean() == doctest::Approx(1.5));
+  CHECK(drive.state.held.deviation() == doctest::Approx(1.5));
+  CHECK(drive.state.held.largest == doctest::Approx(3));
+}
+
+TEST_CASE("a stress that rises evenly ends the run where it is reached, not where its mean gets there") {
+  const Case::Loading loading{.wall_velocity = v, .max_strain = 0.3, .max_stress = target, .unload_at = {}};
+  WallDrive drive = drive_of(loading);
+  Spring spring{.stiffness = 100 * target};
+  while (!drive.finished(spring.step)) spring.advance(drive);
+  CHECK(spring.stress == doctest::Approx(target).epsilon(5e-3));  // 1.1 by the mean over 0.1 % of strain
+  CHECK(drive.early_end(spring.step) == "loading.max_stress is reached");
+  CHECK(drive.outcome(spring.step).completed);
+}
+
+TEST_CASE("stresses that a path does not reach are named, with the largest that it met") {
+  for (const bool hold : {true, false}) {
+    Case::Loading loading{.wall_velocity = v, .max_strain = 0.01, .unload_at = {}};
+    (hold ? loading.hold_stress : loading.max_stress) = target;
+    if (hold) loading.hold = 0.1e-3;
+    WallDrive drive = drive_of(loading);
+    Spring spring{.stiffness = 10 * target};
+    CHECK(drive.outcome(0).shortfall.empty());
+    while (!drive.finished(spring.step)) spring.advance(drive);
+    const PathOutcome outcome = drive.outcome(spring.step);
+    CHECK(outcome.completed == !hold);  // the last strain is an end that the case names; a hold is left out
+    CHECK(outcome.shortfall.starts_with(hold ? "loading.hold_stress of 1e+06 Pa was not reached: the largest "
+                                               "stress was 1e+05 Pa"
+                                             : "loading.max_stress of 1e+06 Pa was not reached: the largest "
+                                               "stress was 1e+05 Pa"));
   }
 }
 
