@@ -39,8 +39,7 @@ TEST_CASE("soft grains that cannot be are refused with the key, the value and wh
            {"mpm.law=\"rubber\"", "'rubber'", "takes one of \"neo_hookean\""},
            {"mpm.integrator=\"newmark\"", "'newmark'", "takes one of \"implicit\", \"explicit\""},
            {"sample.packing_fraction=0.9", "0.9", "it must be in (0, 0.8)"},
-           {"sample.packing_fraction=0.79", "0.79",
-            "no places without overlap for 10 grains; use a smaller one"},
+           {"sample.packing_fraction=0.79", "0.79", "the largest fraction found for them is 0.7"},
        }) {
     const TemporaryDirectory directory;
     const ProcessResult result = run_box(directory, {setting});

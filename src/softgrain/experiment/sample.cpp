@@ -1,8 +1,10 @@
 #include "softgrain/experiment/sample.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/geometry/cell_grid.hpp"
@@ -12,6 +14,12 @@ namespace softgrain {
 namespace {
 
 enum Stream : std::uint32_t { diameters, places, angles };
+
+/// Shares of the clearance that are tried, one after the other.
+constexpr std::array clearance_shares{1.0, 0.5, 0.25};
+
+/// Diameters are drawn anew up to so often: few grains of some sizes find no places where others do.
+constexpr int most_draws = 60;
 
 /// Pushes grains out of the walls and out of each other once; returns the largest overlap met [m].
 double push_apart(BoxSample& sample, double clearance, double widest) {
@@ -31,52 +39,109 @@ double push_apart(BoxSample& sample, double clearance, double widest) {
     PlacedGrain &a = sample.grains[i], &b = sample.grains[j];
     const Vec<2> d = b.centre - a.centre;
     const double distance = norm(d), overlap = (1 + clearance) * (a.radius + b.radius) - distance;
-    if (!(overlap > 0) || distance == 0) return;
+    if (!(overlap > 0)) return;
     worst = std::max(worst, overlap);
-    const Vec<2> push = (0.3 * overlap / distance) * d;
+    // two in one corner: apart in any direction
+    const Vec<2> push = distance > 0 ? (0.3 * overlap / distance) * d : Vec<2>{0.3 * overlap, 0};
     a.centre -= push;
     b.centre += push;
   });
   return worst;
 }
 
-}  // namespace
+/// The box and its grains without their places: the draw-th diameters.
+BoxSample drawn(const BoxSampleOptions& options, int draw) {
+  BoxSample sample;
+  double area = 0;
+  for (int i = 0; i < options.grains; ++i) {
+    const std::uint64_t number = i + static_cast<std::uint64_t>(draw) * options.grains;
+    const double diameter = options.smallest + (options.largest - options.smallest) *
+                                                   random_uniform(options.seed, Stream::diameters, number);
+    sample.grains.push_back(
+        {.centre = {},
+         .radius = diameter / 2,
+         .angle = 2 * std::numbers::pi * random_uniform(options.seed, Stream::angles, i)});
+    area += std::numbers::pi * diameter * diameter / 4;
+  }
+  const double side = std::sqrt(area / options.packing_fraction);
+  sample.width = side * std::sqrt(options.aspect);
+  sample.height = side / std::sqrt(options.aspect);
+  return sample;
+}
 
-BoxSample sample_box(const BoxSampleOptions& options) {
+bool has_room(const BoxSample& sample, double clearance) {
+  const double least = std::min(sample.width, sample.height);
+  return std::ranges::all_of(
+      sample.grains, [&](const PlacedGrain& grain) { return 2 * (1 + clearance) * grain.radius <= least; });
+}
+
+/// Uniform places, the start-th ones, from which overlaps are pushed out. True if none is left.
+bool place(BoxSample& sample, const BoxSampleOptions& options, double clearance, int start, int most_passes) {
+  for (int i = 0; i < options.grains; ++i) {
+    const std::uint64_t number = 2 * (i + static_cast<std::uint64_t>(start) * options.grains);
+    sample.grains[i].centre = {sample.width * random_uniform(options.seed, Stream::places, number),
+                               sample.height * random_uniform(options.seed, Stream::places, number + 1)};
+  }
+  const double tolerance = 1e-3 * clearance * options.smallest;
+  for (int pass = 0; pass < most_passes; ++pass)
+    if (push_apart(sample, clearance, options.largest / 2) < tolerance) return true;
+  return false;
+}
+
+/// Other places, less clearance, other diameters, until no grain overlaps; nothing if that does not come.
+std::optional<BoxSample> search(const BoxSampleOptions& options, std::span<const double> shares,
+                                int most_starts) {
+  const int starts = std::clamp(4000 / options.grains, 2, most_starts);
+  const int passes = std::min(200 * options.grains, 5000);
+  const int draws = std::clamp(300 / options.grains, 1, most_draws);
+  for (int draw = 0; draw < draws; ++draw) {
+    BoxSample sample = drawn(options, draw);
+    for (const double share : shares) {
+      const double clearance = share * options.clearance;
+      if (!has_room(sample, clearance)) continue;
+      for (int start = 1; start <= starts; ++start)
+        if (place(sample, options, clearance, start, passes)) return sample;
+    }
+  }
+  return std::nullopt;
+}
+
+void check(const BoxSampleOptions& options) {
   require(options.grains >= 1, "a sample needs at least one grain, got {}", options.grains);
   require(options.smallest > 0 && options.largest >= options.smallest,
           "diameters must be positive and in order, got {} m and {} m", options.smallest, options.largest);
   require(options.packing_fraction > 0 && options.packing_fraction < 0.8,
           "the packing fraction of a random sample must be in (0, 0.8), got {}", options.packing_fraction);
   require(options.aspect > 0, "the aspect of a box must be positive, got {}", options.aspect);
-  BoxSample sample;
-  double area = 0;
-  for (int i = 0; i < options.grains; ++i) {
-    const double diameter = options.smallest + (options.largest - options.smallest) *
-                                                   random_uniform(options.seed, Stream::diameters, i);
-    sample.grains.push_back({.centre = {}, .radius = diameter / 2});
-    area += std::numbers::pi * diameter * diameter / 4;
-  }
-  const double side = std::sqrt(area / options.packing_fraction);
-  sample.width = side * std::sqrt(options.aspect);
-  sample.height = side / std::sqrt(options.aspect);
-  for (const PlacedGrain& grain : sample.grains)
-    require(2 * (1 + options.clearance) * grain.radius <= std::min(sample.width, sample.height),
-            "a grain of diameter {} m has no room in a box of {} m by {} m; use a smaller "
-            "sample.packing_fraction or a sample.aspect nearer to 1",
-            2 * grain.radius, sample.width, sample.height);
-  for (int i = 0; i < options.grains; ++i) {
-    sample.grains[i].angle = 2 * std::numbers::pi * random_uniform(options.seed, Stream::angles, i);
-    sample.grains[i].centre = {sample.width * random_uniform(options.seed, Stream::places, 2 * i),
-                               sample.height * random_uniform(options.seed, Stream::places, 2 * i + 1)};
-  }
+}
+
+}  // namespace
+
+BoxSample sample_box(const BoxSampleOptions& options) {
+  check(options);
+  BoxSample sample = drawn(options, 0);
   constexpr int most_passes = 100000;
-  const double tolerance = 1e-3 * options.clearance * options.smallest;
-  for (int pass = 0; pass < most_passes; ++pass)
-    if (push_apart(sample, options.clearance, options.largest / 2) < tolerance) return sample;
+  if (has_room(sample, options.clearance) && place(sample, options, options.clearance, 0, most_passes))
+    return sample;
+  if (std::optional<BoxSample> found = search(options, clearance_shares, 40)) return *found;
   throw UsageError(
-      fmt::format("sample.packing_fraction = {}: no places without overlap for {} grains; use a smaller one",
-                  options.packing_fraction, options.grains));
+      fmt::format("sample.packing_fraction = {}: no places without overlap for sample.grains = {} in a box "
+                  "of aspect {}; the "
+                  "largest fraction found for them is {:.2f}: use that or less{}",
+                  options.packing_fraction, options.grains, options.aspect, largest_packing_fraction(options),
+                  options.grains < 50 ? ", or more grains" : ""));
+}
+
+double largest_packing_fraction(const BoxSampleOptions& options) {
+  check(options);
+  int low = 0, high = static_cast<int>(std::ceil(100 * options.packing_fraction));  // per cent
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    BoxSampleOptions some = options;
+    some.packing_fraction = 0.01 * middle;
+    (search(some, std::span(clearance_shares).last(1), 5) ? low : high) = middle;
+  }
+  return 0.01 * low;
 }
 
 BoxSample sample_box(const Case& c) {

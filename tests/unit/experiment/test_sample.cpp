@@ -59,3 +59,63 @@ TEST_CASE("a sample that cannot be is refused") {
   // one grain fills pi/4 of the box that just holds it, and it wants clearance too
   CHECK_THROWS_AS(sample_box({.grains = 1, .packing_fraction = 0.79}), UsageError);
 }
+
+TEST_CASE("few grains find places at a packing fraction of 0.7, whatever the seed, wherever there are any") {
+  for (const int grains : {1, 4, 5, 8, 10, 12, 15, 20})
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      CAPTURE(grains);
+      CAPTURE(seed);
+      const BoxSample sample = sample_box({.grains = grains, .packing_fraction = 0.7, .seed = seed});
+      const Vec<2> size{sample.width, sample.height};
+      double area = 0, least_gap = 1;
+      for (std::size_t i = 0; i < sample.grains.size(); ++i) {
+        const PlacedGrain& a = sample.grains[i];
+        area += std::numbers::pi * a.radius * a.radius;
+        CHECK(2 * a.radius >= 1.4e-3);
+        CHECK(2 * a.radius <= 2.4e-3);
+        for (int k = 0; k < 2; ++k)
+          least_gap =
+              std::min({least_gap, (a.centre[k]) / a.radius - 1, (size[k] - a.centre[k]) / a.radius - 1});
+        for (std::size_t j = 0; j < i; ++j) {
+          const PlacedGrain& b = sample.grains[j];
+          least_gap = std::min(least_gap, norm(a.centre - b.centre) / (a.radius + b.radius) - 1);
+        }
+      }
+      CHECK(area / (size[0] * size[1]) == doctest::Approx(0.7));
+      CHECK(least_gap > 0.0049);  // a quarter of the clearance, but for the tolerance
+    }
+}
+
+// Densest packings of equal disks in a square (Graham and Lubachevsky 1996, Specht's table): their fractions,
+// which a clearance of 0.005 R makes smaller by 1.005^2.
+TEST_CASE(
+    "equal disks are packed into a square to within 0.03 of the densest packings known, and no further") {
+  for (const auto& [grains, densest] : {std::pair{1, 0.7854},
+                                        {2, 0.5390},
+                                        {3, 0.6096},
+                                        {4, 0.7854},
+                                        {5, 0.6737},
+                                        {6, 0.6640},
+                                        {10, 0.6900}}) {
+    CAPTURE(grains);
+    const double found = largest_packing_fraction(
+        {.grains = grains, .smallest = 2e-3, .largest = 2e-3, .packing_fraction = 0.79});
+    CHECK(found <= densest / (1.005 * 1.005));
+    CHECK(found > densest / (1.005 * 1.005) - 0.03);
+  }
+}
+
+TEST_CASE("grains for which there are no places are refused with the fraction that they can have") {
+  const BoxSampleOptions options{.grains = 2, .smallest = 2e-3, .largest = 2e-3, .packing_fraction = 0.7};
+  std::string message;
+  try {
+    sample_box(options);
+  } catch (const UsageError& error) {
+    message = error.what();
+  }
+  CAPTURE(message);
+  CHECK(message.find("the largest fraction found for them is 0.53") != std::string::npos);
+  BoxSampleOptions less = options;
+  less.packing_fraction = largest_packing_fraction(options);
+  CHECK(sample_box(less).grains.size() == 2);
+}

@@ -23,7 +23,7 @@ double largest_frequency(const SoftGrains& grains) {
   const GrainBatch& batch = grains.batches[0];
   GrainBatch moved = batch;
   WideVectors forward, backward, mode(batch.position.size());
-  RandomNumbers random(5);
+  test::RandomNumbers random(5);
   for (Vec<2, Wide>& d : mode) {
     const Vec<2> v = random.vector<2>(1);
     d = {v[0], v[1]};
