@@ -130,3 +130,27 @@ TEST_CASE("twenty soft grains are compacted to 98 % without crossing, alike by b
   CHECK(std::abs(implicit.phi_of_mark - explicit_.phi_of_mark) < 0.005);
   CHECK(implicit.stress_of_mark == doctest::Approx(explicit_.stress_of_mark).epsilon(0.1));
 }
+
+TEST_CASE("a box of grains is compacted at 1 mm/s with every step converged, at forces that balance") {
+  const BoxSample sample = sample_box({.grains = 20});
+  std::vector<GrainPlacement> placed;
+  for (const PlacedGrain& grain : sample.grains)
+    placed.push_back(test::placed(test::disk(4), grain.radius, grain.centre, {}, grain.angle));
+  SoftGrains grains(std::move(placed), make_law("neo_hookean", 1e7, 0.45), 990, false);
+  ImplicitDynamics dynamics(std::move(grains), test::box_walls(sample.width, 1e-3), {});
+  const double dt = 0.01 * 0.7e-3 / 1e-3;
+  int steps = 0;
+  double largest = 0;
+  for (; std::log(sample.width / dynamics.walls[1].point[1]) < 0.15; ++steps) {
+    const SoftStepReport report = dynamics.step(dt);
+    REQUIRE(report.converged);
+    REQUIRE(report.residual < 1e-4);
+    REQUIRE(report.penetration_max < 1.5e-3);
+    const double top = dynamics.wall_impulse(1)[1] / dt, bottom = -dynamics.wall_impulse(0)[1] / dt;
+    REQUIRE(std::abs(top - bottom) < 0.01 * top + 1e-5 * 1e7 * sample.width);
+    largest = std::max(largest, top);
+  }
+  CHECK(largest > 5e-3 * 1e7 * sample.width);  // grains are pressed
+  const WorkBudget& work = dynamics.work;      // kinetic energy is nothing
+  CHECK(work.walls == doctest::Approx(work.internal + work.contacts + work.inertia).epsilon(0.02));
+}

@@ -112,3 +112,44 @@ TEST_CASE("no grain locks, from nu = 0 to 0.4999: 8 cells within 2.5 %, 16 withi
     CHECK(force_at(slow, {0.1})[0] == doctest::Approx(force).epsilon(0.007));
   }
 }
+
+TEST_CASE("the force on a grain does not depend on the speed of the plates, from 0.2 m/s to 1 mm/min") {
+  // in steps of 1 % R; the last force is the converged finite elements' of the first case
+  const auto curve = [](int cells, double friction, double speed) {
+    const auto shape = test::disk(cells);
+    double reach = 0;
+    for (const Vec<2>& X : shape->grid.outline()) reach = std::max(reach, X[1] * R);
+    ImplicitDynamics dynamics(
+        {{test::placed(shape, R, {0, 0})}, make_law("neo_hookean", E, 0.45), 990, false},
+        {test::floor_at(-reach), {.point = {0, reach}, .normal = {0, -1}, .velocity = {0, -speed}}},
+        {.wall_friction = friction});
+    const double dt = 0.01 * R / speed;
+    std::vector<double> force;
+    for (int step = 1; step <= 10; ++step) {
+      const SoftStepReport report = dynamics.step(dt);
+      CHECK(report.converged);
+      CHECK(report.residual < 1e-4);
+      CHECK(report.penetration_max < 1e-3);
+      const double top = dynamics.wall_impulse(1)[1] / dt, bottom = -dynamics.wall_impulse(0)[1] / dt;
+      if (speed < 0.1) CHECK(top == doctest::Approx(bottom).epsilon(0.003));  // no inertia
+      force.push_back((top + bottom) / 2 * (1 - 0.45 * 0.45) / (E * R));
+    }
+    return force;
+  };
+  for (const int cells : {4, 16})
+    for (const double friction : {0.0, 0.3}) {
+      CAPTURE(cells);
+      CAPTURE(friction);
+      const std::vector<double> slowest = curve(cells, friction, 1e-3 / 60);
+      for (const double speed : {1e-4, 1e-3, 1e-2, 0.2}) {
+        CAPTURE(speed);
+        const std::vector<double> force = curve(cells, friction, speed);
+        for (std::size_t k = 0; k < force.size(); ++k) {
+          CAPTURE(k);
+          // at 0.2 m/s the first row feels the grain's inertia, 1 % of the force
+          CHECK(force[k] == doctest::Approx(slowest[k]).epsilon(speed > 0.1 && k == 0 ? 0.015 : 0.005));
+        }
+      }
+      if (cells == 16) CHECK(slowest[9] == doctest::Approx(.03168).epsilon(0.02));  // d/R = 0.05
+    }
+}

@@ -66,7 +66,7 @@ StepReport MpmSimulation<Dynamics>::step() {
   const double limit = std::is_same_v<Dynamics, ImplicitDynamics> ? drive_.stress_limit(step_) : 0;
   const SoftStepReport soft =
       limit > 0 ? step_under(limit) : step_at(drive_.approach_speed(step_, height_start_ - plate_distance()));
-  if (const int grain = runaway_grain(dynamics_.grains, dt_); grain >= 0)
+  if (const int grain = runaway_grain(dynamics_.grains, dynamics_.impulse_time); grain >= 0)
     throw NumericalError(
         fmt::format("grain {} moves by more than half its radius in a step; use a smaller time step", grain));
   ++step_;
@@ -265,6 +265,8 @@ Checkpoint MpmSimulation<Dynamics>::checkpoint() const {
   state.arrays["sums"] = {1, std::move(sums)};
   if constexpr (std::is_same_v<Dynamics, ExplicitDynamics>) save_stable_step(dynamics_.stable, state);
   drive_.save(state);
+  if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>)
+    state.arrays["sub_step"] = {1, std::vector<double>{dynamics_.sub_step}};
   return state;
 }
 
@@ -323,6 +325,12 @@ void MpmSimulation<Dynamics>::restore(const Checkpoint& state) {
   drive_.state.ended = static_cast<WallDrive::End>(sums[8][0]);
   drive_.restore(state);
   dynamics_.impulse_time = sums[9][0];
+  if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>)
+    if (state.arrays.contains("sub_step")) {  // 0.1.0 did not keep it
+      std::vector<Vec<1>> sub_step(1);
+      from_array<1>(state, "sub_step", sub_step);
+      dynamics_.sub_step = sub_step[0][0];
+    }
   dynamics_.work = {.walls = sums[10][0],
                     .gravity = sums[11][0],
                     .internal = sums[12][0],

@@ -12,9 +12,10 @@ void ImplicitDynamics::catch_problem(double dt) {
 }
 
 /// What Newton's tolerance left of sum_i m_i (v - v_n)_i = dt f_ext + H p is given back to each grain as a
-/// whole.
+/// whole; in a quasi-static step to a grain that touches others, no more than one more correction would.
 void ImplicitDynamics::balance_momentum(double dt) {
   const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
+  const double t = step_of_matrix(dt);
   parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];
     WideVectors missing(batch.position.size());
@@ -29,7 +30,9 @@ void ImplicitDynamics::balance_momentum(double dt) {
         sum[d] +=
             dt * (missing[i][d] + m * Wide(options.gravity[d])) - m * (batch.velocity[i][d] - flight[d]);
     }
-    for (Vec<2, Wide>& v : batch.velocity) v += (1.0 / mass) * sum;
+    const Wide touching = t * t / (dt * dt);
+    const Wide share = (touching + flying_[b] * (Wide(1) - touching)) / mass;
+    for (Vec<2, Wide>& v : batch.velocity) v += share * sum;
   });
 }
 

@@ -23,6 +23,15 @@ constexpr int refactor_every = 8;
 /// NLGS sweeps in vain (docs/decisions/0013).
 constexpr double contact_share = 0.25;
 
+/// A vertex may be this many tolerances deep: the worst contact that NLGS allows, and Newton's last move.
+constexpr double deepest = 10;
+
+/// Proximal term of a quasi-static step over that of others (docs/decisions/0023).
+constexpr double quasi_static_proximal = 2;
+
+/// Sub-steps shorter than this share of the explicit step are not tried.
+constexpr double shortest_step = 1.0 / 64;
+
 }  // namespace
 
 ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
@@ -37,6 +46,9 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
     smallest_radius_ = std::min(smallest_radius_, grains.radius(g));
   }
   explicit_step_ = stable_time_step(grains, 1);
+  const double wave_speed =
+      std::visit([&](const auto& law) { return law.wave_speed(grains.density); }, grains.law);
+  wave_time_ = smallest_radius_ / wave_speed;
   for (const GrainBatch& batch : grains.batches) {
     matrix_.emplace_back(batch.topology->pattern);
     const std::size_t width = 2 * batch.topology->grid.outline_nodes();
@@ -45,27 +57,28 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
   for (auto* vectors : {&start_, &velocity_start_, &half_solved_, &force_, &kept_, &correction_, &moved_})
     vectors->resize(grains.batches.size());
   wall_impulse_.resize(walls.size());
+  pace_.resize(grains.batches.size());
 }
 
 SoftStepReport ImplicitDynamics::step(double dt) {
   SoftStepReport report;
   wall_impulse_.assign(walls.size(), {});
-  double done = 0, part = dt;
-  int halvings = 0;
-  while (done < dt * (1 - 1e-9)) {
-    part = std::min(part, dt - done);
+  if (sub_step <= 0) sub_step = dt;
+  const double shortest = shortest_step * std::min(dt, explicit_step_);
+  for (double done = 0; done < dt * (1 - 1e-9);) {
+    const double part = std::min(sub_step, dt - done);
     const Failure failure = try_step(part, report);
     if (failure == Failure::none) {
       done += part;
-      part *= 2;
-      halvings = std::max(0, halvings - 1);
+      if (part == sub_step) sub_step *= 2;
       continue;
     }
     take_back();
     ++report.rejected;
-    if (++halvings > options.max_halvings) give_up(failure, part);
-    part /= 2;
+    sub_step = part / 4;
+    if (sub_step < shortest) give_up(failure, part);
   }
+  report.converged = true;
   return report;
 }
 
@@ -74,67 +87,112 @@ void ImplicitDynamics::give_up(Failure failure, double dt) const {
                       : failure == Failure::indefinite_matrix ? "the stiffness is indefinite"
                       : failure == Failure::not_finite        ? "a correction is not finite"
                       : failure == Failure::too_far           ? "a correction is larger than half a grain"
+                      : failure == Failure::too_deep          ? "a contact stays too deep"
                                                               : "Newton's method does not converge";
   throw NumericalError(fmt::format(
-      "no step of soft grains down to dt = {:.3g} s, halved {} times: {} in grain {}; use a smaller "
-      "time step, a finer grid or a larger tolerance",
-      dt, options.max_halvings, cause, failed_grain_));
+      "no step of soft grains down to dt = {:.3g} s, {:.3g} of the explicit one: {} in grain {}; use a finer "
+      "grid or a larger tolerance, or load less far",
+      dt, dt / explicit_step_, cause, failed_grain_));
 }
 
-ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& report) {
+/// x at which Newton's method starts: x_n + dt v_n + dt^2 g for grains in flight, in a quasi-static step x_n
+/// for others, whose velocity says how far they fell into their last places, not where they go.
+void ImplicitDynamics::start(double dt) {
   grains.gather_outline(outline_.start);
   walls_start_ = walls;
   damping_ = {options.damping, dt, walls};
   contacts_start_ = contacts;
   impulse_start_ = impulse;
+  set_flying(dt);
   if (impulse_time > 0)
     for (Vec<2>& p : impulse) p *= dt / impulse_time;  // the same force
+  const Vec<2, Wide> fall{dt * dt * options.gravity[0], dt * dt * options.gravity[1]};
   parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];
     start_[b] = batch.position;
     velocity_start_[b] = batch.velocity;
-    for (std::size_t i = 0; i < batch.position.size(); ++i)
-      batch.position[i] += Wide(dt) * flight_velocity(b, i);
+    for (std::size_t i = 0; i < batch.position.size(); ++i) {
+      batch.position[i] += flying_[b] * Wide(dt) * flight_velocity(b, i);
+      if (quasi_static(dt)) batch.position[i] += flying_[b] * fall;
+    }
   });
   for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
   outline_.walls = walls;
   outline_.dt = dt;
-
-  Failure failure = factor(dt, options.proximal, report);
-  if (failure == Failure::indefinite_matrix) failure = factor(dt, 4 * options.proximal, report);
-  for (int iteration = 1; failure == Failure::none; ++iteration) {
-    if ((failure = residual(dt)) != Failure::none) break;
-    report.converged = solve_contacts(dt, report);
-    const bool same_matrix = iteration > 1 && (iteration - 1) % refactor_every != 0;
-    const double correction = correct(same_matrix) / mean_radius_;
-    ++report.iterations;
-    report.residual = correction;
-    if (!(correction < largest_correction))
-      failure = std::isfinite(correction) ? Failure::too_far : Failure::not_finite;
-    if (correction < options.tolerance) break;
-    if (iteration == options.max_iterations)
-      failure = Failure::no_convergence;
-    else if (iteration % refactor_every == 0)
-      failure = factor(dt, options.proximal, report);
-  }
-  return failure == Failure::none ? finish(dt, report) : failure;
 }
 
-/// A = M/dt^2 + K(x) + c p/l on the outline; its Cholesky factor and the compliance of the outlines.
+/// Grains that carry contacts fly no more.
+void ImplicitDynamics::hold_touching() {
+  std::vector<bool> touching(grains.size());
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (!(impulse[c][0] > 0)) continue;
+    touching[grains.grain_of_vertex(contacts[c].vertex)] = true;
+    if (contacts[c].wall < 0) touching[grains.grain_of_vertex(contacts[c].master[0])] = true;
+  }
+  for (int b = 0; b < batches(); ++b)
+    for (int lane = 0; lane < Wide::size && grains.batches[b].grain[lane] >= 0; ++lane)
+      if (touching[grains.batches[b].grain[lane]]) flying_[b].set(lane, 0);
+}
+
+/// All grains, but in a quasi-static step those that carry contacts or would fly further than is trusted.
+void ImplicitDynamics::set_flying(double dt) {
+  flying_.assign(grains.batches.size(), 1.0);
+  if (!quasi_static(dt)) return;
+  hold_touching();
+  for (int b = 0; b < batches(); ++b) {
+    const GrainBatch& batch = grains.batches[b];
+    Wide fastest = 0.0;
+    for (const Vec<2, Wide>& v : batch.velocity) {
+      const Wide square = dot(v, v);
+      fastest = select(square <= fastest, fastest, square);
+    }
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+      if (!(dt * std::sqrt(fastest[lane]) < largest_correction * mean_radius_)) flying_[b].set(lane, 0);
+  }
+}
+
+ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& report) {
+  start(dt);
+  const double proximal = options.proximal * (quasi_static(dt) ? quasi_static_proximal : 1);
+  Failure failure = factor(dt, proximal, report);
+  if (failure == Failure::indefinite_matrix) failure = factor(dt, 4 * proximal, report);
+  Imbalance left;
+  for (int iteration = 1; failure == Failure::none; ++iteration) {
+    if ((failure = residual(dt)) != Failure::none) break;
+    const bool contacts_solved = solve_contacts(dt, report);
+    left = correct(iteration > 1 && (iteration - 1) % refactor_every != 0);
+    ++report.iterations;
+    if (!(left.correction < largest_correction))
+      return std::isfinite(left.correction) ? Failure::too_far : Failure::not_finite;
+    if (contacts_solved && left.residual < options.tolerance) {
+      if (find_depth() <= deepest * options.tolerance) break;
+      failure = iteration == options.max_iterations ? Failure::too_deep : failure;
+    } else if (iteration == options.max_iterations) {
+      failure = Failure::no_convergence;
+    }
+    if (failure == Failure::none && iteration % refactor_every == 0) failure = factor(dt, proximal, report);
+  }
+  if (failure == Failure::none) failure = finish(dt, report);
+  if (failure == Failure::none) report.residual = std::max(report.residual, left.residual);
+  return failure;
+}
+
+/// A = M/t^2 + K(x) + c p/l on the outline; its Cholesky factor and the compliance of the outlines.
 ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, SoftStepReport& report) {
-  std::vector<Vec<2>> pressure(grains.outline_size());  // p/l on both components
+  proximal_.assign(grains.outline_size(), {});
   if (!contacts.empty()) {
     const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
     for (int v = 0; v < grains.outline_size(); ++v) {
       const int g = grains.grain_of_vertex(v);
       const double length =
           2 * std::numbers::pi * grains.radius(g) / (grains.outline_end(g) - grains.outline_begin(g));
-      pressure[v] = (proximal * norm(force[v]) / length) * Vec<2>{1, 1};
+      proximal_[v] = (proximal * norm(force[v]) / length) * Vec<2>{1, 1};
     }
   }
   report.factorisations += batches();
+  const double t = step_of_matrix(dt);
   const Precision precision =
-      dt <= options.single_precision_steps * explicit_step_ ? Precision::single : Precision::full;
+      t <= options.single_precision_steps * explicit_step_ ? Precision::single : Precision::full;
   std::vector<int> failed(batches(), -1);
   parallel_for(batches(), [&](int b) {
     const GrainBatch& batch = grains.batches[b];
@@ -142,9 +200,9 @@ ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, S
     A.clear(precision);
     add_stiffness(grains, batch, A);
     WideVectors diagonal(batch.position.size());
-    grains.scatter_outline(pressure, batch, diagonal);
+    grains.scatter_outline(proximal_, batch, diagonal);
     for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
-      const Wide entry = grains.node_mass(batch, i) * Wide(1 / (dt * dt)) + diagonal[i][0];
+      const Wide entry = grains.node_mass(batch, i) * Wide(1 / (t * t)) + diagonal[i][0];
       A.add(i, i, {entry, 0.0, 0.0, entry});
     }
     failed[b] = batch.grain_in(A.factor());
@@ -212,6 +270,15 @@ bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   return solved.converged;
 }
 
+/// Of the deepest vertex at the present positions, over the mean radius; keeps the contacts found.
+double ImplicitDynamics::find_depth() {
+  grains.gather_outline(outline_.position);
+  found_ = neighbours_.detect(grains, outline_);
+  double depth = 0;
+  for (const OutlineContact& contact : found_) depth = std::max(depth, -contact.gap / mean_radius_);
+  return depth;
+}
+
 /// v = (x - x_n)/dt; the walls' impulses; the work done; the contacts as they are at the end.
 ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& report) {
   std::vector<int> failed(batches(), -1);
@@ -223,12 +290,11 @@ ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& re
   });
   if (!none_failed(failed)) return Failure::inverted_point;
   if (caught) catch_problem(dt);
+  if (quasi_static(dt)) hold_touching();
   balance_momentum(dt);
-  grains.gather_outline(outline_.position);
   add_work();
-  std::vector<OutlineContact> found = neighbours_.detect(grains, outline_);
-  impulse = carried_impulses(grains, contacts, impulse, found);
-  contacts = std::move(found);
+  impulse = carried_impulses(grains, contacts, impulse, found_);
+  contacts = std::move(found_);
   impulse_time = dt;
   report.contacts = 0;
   for (std::size_t c = 0; c < contacts.size(); ++c) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,7 +22,9 @@ struct ImplicitOptions {
   int max_iterations = 40;  ///< of Newton's method
   double proximal =
       0.5;  ///< c of the term c p/l on the outline's diagonal of the tangent (p/l contact pressure)
-  int max_halvings = 8;  ///< of the time step before NumericalError
+  /// In times of a wave through the smallest grain, R/c (docs/decisions/0023): a (sub-)step longer than this
+  /// is quasi-static, and A has the inertia of a step of at most that
+  double quasi_static_from = 6, inertia_of_at_most = 20;
   /// A is factored in single precision for steps up to this many explicit ones (h/c, stable_time_step); its
   /// condition is about 4 times the square of their ratio (docs/decisions/0019). 0: never
   double single_precision_steps = 60;
@@ -39,14 +42,20 @@ struct ImplicitOptions {
 /// Newton's method detects contacts anew in every iteration; A = M/dt^2 + K + proximal term is factored once
 /// a step, and again where Newton's method needs many iterations; each grain follows the secant of its last
 /// two corrections (docs/decisions/0021).
+///
+/// A quasi-static step, dt > 6 R/c, starts Newton's method at x_n where grains touch, and solves the same
+/// equations with A = M/t^2 + K + proximal term, t = min(dt, 20 R/c): a grain's rigid motions cost something
+/// in A, though nothing in the residual, so that NLGS works as well as in a step of t. That the forces
+/// balance is asked for apart (docs/decisions/0023).
 class ImplicitDynamics {
  public:
   ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
                    const ImplicitOptions& implicit_options);
 
-  /// One step of dt; walls move by dt times their velocity. A sub-step that does not converge, inverts a
-  /// point or makes A indefinite is taken back and halved. Raises NumericalError after max_halvings, naming
-  /// the grain.
+  /// One step of dt; walls move by dt times their velocity. A sub-step in which Newton's method or NLGS does
+  /// not converge, that leaves a contact too deep, inverts a point or makes A indefinite is taken back and
+  /// tried again with a quarter of its length; sub-steps grow again while they succeed, also from one step to
+  /// the next. Raises NumericalError, naming the grain, for sub-steps far below the explicit one.
   SoftStepReport step(double dt);
 
   /// Impulse of the grains on a wall in the last step [N s/m].
@@ -59,18 +68,45 @@ class ImplicitDynamics {
   std::vector<OutlineContact> contacts;  ///< at the end of the last step
   std::vector<Vec<2>> impulse;           ///< theirs (p_n, p_t) [N s/m]
   double impulse_time = 0;               ///< the (sub-)step over which they acted [s]
+  double sub_step = 0;                   ///< the longest to try next [s]; 0: the whole step
   WorkBudget work;                       ///< since the start
   /// Unless empty: becomes the last contact problem of every step.
   std::optional<SolvedContactProblem> caught;
 
  private:
-  enum class Failure { none, inverted_point, indefinite_matrix, not_finite, too_far, no_convergence };
+  enum class Failure {
+    none,
+    inverted_point,
+    indefinite_matrix,
+    not_finite,
+    too_far,
+    no_convergence,
+    too_deep
+  };
 
+  /// Largest correction of an iteration, over the mean radius, and what is compared with the tolerance: the
+  /// same, or, of a quasi-static step, a quarter of it or a tenth of the unbalanced force of a grain over its
+  /// contact force, whichever is more.
+  struct Imbalance {
+    double correction = 0, residual = 0;
+  };
+
+  bool quasi_static(double dt) const { return dt > options.quasi_static_from * wave_time_; }
+  /// The step whose inertia A has [s].
+  double step_of_matrix(double dt) const { return std::min(dt, options.inertia_of_at_most * wave_time_); }
   Failure try_step(double dt, SoftStepReport& report);
+  void start(double dt);
+  void set_flying(double dt);
+  void hold_touching();
   Failure factor(double dt, double proximal, SoftStepReport& report);
   Failure residual(double dt);
   bool solve_contacts(double dt, SoftStepReport& report);
-  double correct(bool same_matrix);
+  Imbalance correct(bool same_matrix);
+  double largest_correction_of_grains();
+  double unbalanced_force(std::span<const Vec<2>> contact_force) const;
+  void follow_secant(bool accelerated);
+  void follow_momentum(bool same_matrix, bool accelerated);
+  double find_depth();
   void catch_problem(double dt);
   Failure finish(double dt, SoftStepReport& report);
   void balance_momentum(double dt);
@@ -86,6 +122,7 @@ class ImplicitDynamics {
 
   double mean_radius_ = 0, smallest_radius_ = 0;
   double explicit_step_ = 0;  // h/c [s]
+  double wave_time_ = 0;      // R/c of the smallest grain [s]
   OutlineNeighbours neighbours_;
   std::vector<BatchedCholesky> matrix_;
   std::vector<OutlineCompliance> compliance_;
@@ -95,10 +132,13 @@ class ImplicitDynamics {
 
   std::vector<WideVectors> start_, velocity_start_, half_solved_, force_, kept_;  // per batch
   std::vector<WideVectors> correction_, moved_;  // of the iteration before: f, and what became of x
+  std::vector<Wide> flying_;                     // 1 for grains whose start is x_n + dt v_n, else 0
+  std::vector<Wide> pace_;                       // t_k of follow_momentum
+  std::vector<Vec<2>> proximal_;                 // (outline vertices) c p/l on both components [N/m^2]
   std::vector<Vec<2>> outline_increment_;
   OutlineState outline_;
   std::vector<Wall<2>> walls_start_;
-  std::vector<OutlineContact> contacts_start_;
+  std::vector<OutlineContact> contacts_start_, found_;
   std::vector<Vec<2>> impulse_start_;
   std::vector<Vec<2>> wall_impulse_;
   int failed_grain_ = -1;
