@@ -23,7 +23,8 @@ class SpeedSearch {
     bool known = false;
   };
   double v_max_, accuracy_, slope_;
-  Point low_, high_, best_;  // with excess < 0, > 0, least |excess|
+  Point low_, high_, best_;             // with excess < 0, > 0, least |excess|
+  double rise_ = 0, excess_above_ = 0;  // slope between the last two with excess > 0, and the last excess
   int tries_ = 0, last_side_ = 0;
 };
 

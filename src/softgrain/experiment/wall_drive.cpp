@@ -51,12 +51,14 @@ void WallDrive::begin_hold(std::int64_t step) {
   state.speed = loading_.wall_velocity;
 }
 
-/// The mean lags behind a stress that rises evenly, and its own mean lags behind it as far.
+/// The mean lags behind a stress that rises evenly, and its own mean lags behind it as far; where the plates
+/// rest there is no lag to make up for.
 void WallDrive::watch(double stress, double height, std::int64_t steps_done) {
   const double share = std::min(1.0, loading_.wall_velocity * dt_ / height / averaging_strain);
   state.stress += share * (stress - state.stress);
   state.stress_twice += share * (state.stress - state.stress_twice);
-  const double present = 2 * state.stress - state.stress_twice;
+  const double present =
+      path_->approaches(steps_done - 1) ? 2 * state.stress - state.stress_twice : state.stress;
   state.largest = std::max(state.largest, present);
   if (loading_.max_stress > 0 && present >= loading_.max_stress) state.ended = End::max_stress;
   if (loading_.hold_stress == 0) return;

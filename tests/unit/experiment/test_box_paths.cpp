@@ -168,7 +168,7 @@ TEST_CASE("a held stress is kept, in grains soft and stiff, and never far exceed
     Case c = soft_packing("compaction");
     c.mpm.young_modulus = young_modulus;
     c.loading.wall_velocity = 0.5;
-    c.loading.hold = 6e-3;
+    c.loading.hold = 12e-3;
     c.loading.hold_stress = 1e4;
     const auto simulation = create_simulation(c);
     while (!simulation->finished()) simulation->step();
@@ -179,7 +179,7 @@ TEST_CASE("a held stress is kept, in grains soft and stiff, and never far exceed
   Case c = soft_packing("isotropic", "explicit");
   c.mpm.young_modulus = 1e7;
   c.loading.wall_velocity = 0.5;
-  c.loading.hold = 6e-3;
+  c.loading.hold = 12e-3;
   c.loading.hold_stress = 1e5;
   const auto simulation = create_simulation(c);
   while (!simulation->finished()) simulation->step();
