@@ -120,7 +120,7 @@ TEST_CASE("the force on a grain does not depend on the speed of the plates, from
     double reach = 0;
     for (const Vec<2>& X : shape->grid.outline()) reach = std::max(reach, X[1] * R);
     ImplicitDynamics dynamics(
-        {{test::placed(shape, R, {0, 0})}, make_law("neo_hookean", E, 0.45), 990, false},
+        {{test::placed(shape, R, {0, 0})}, make_law("neo_hookean", E, 0.45), 990},
         {test::floor_at(-reach), {.point = {0, reach}, .normal = {0, -1}, .velocity = {0, -speed}}},
         {.wall_friction = friction});
     const double dt = 0.01 * R / speed;

@@ -249,7 +249,8 @@ TEST_CASE("a run is resumed only with the case that it was begun with") {
   const test::TemporaryDirectory directory;
   run_until_signal(directory.path(), 20, SIGTERM);
   RunRequest other = request(true);
-  other.case_text += "[grain]\nradius = 1.0  # m\n";
+  other.case_text += "[grain]\nradius = 1.0\n";
+  other.the_case.grain.radius = 1;
   CHECK_THROWS_AS(run_ball(directory.path(), other), UsageError);
   CHECK(run_json(directory.path())["state"] == "stopped");
 }
