@@ -54,7 +54,7 @@ TEST_CASE("an explicit grain is squeezed to strain 1.5 without energy from nothi
 }
 
 TEST_CASE("an explicit run whose steps are divided goes on from a checkpoint with the same bits") {
-  const Case c = squeezed_grain(3, 30);
+  const Case c = squeezed_grain(3, 10);
   const auto whole = create_simulation(c);
   while (whole->strain() < 1.3) whole->step();
   CHECK(value_of(whole->observe(), "iterations") > 1);  // sub-steps

@@ -37,7 +37,9 @@ TEST_CASE("a free damped grain slows down as exp(-zeta t), in both integrators a
     const Vec<2> now = (1 / dynamics.grains.mass(0)) * dynamics.grains.momentum();
     CHECK(norm(now - expected * v) < 1e-10);
     CHECK(std::abs(missing_energy(dynamics, start)) < 1e-10 * start);
-    CHECK(dynamics.work.damping > 0.5 * start);
+    CHECK(dynamics.work.damping > 0);
+    if (steps == 100)  // to first order in zeta dt
+      CHECK(dynamics.work.damping == doctest::Approx(start * (1 - expected * expected)).epsilon(0.03));
   };
   for (const int steps : {1, 3, 100}) {
     check(ImplicitDynamics(moving_grain(v), {}, {.damping = zeta}), steps);
@@ -91,7 +93,7 @@ TEST_CASE("the work of two damped grains that collide is accounted for, and they
     const double explicitly =
         rebound(ExplicitDynamics(pair(), {}, {.damping_share = 0.5, .damping = rate}), dt);
     const double implicitly = rebound(ImplicitDynamics(pair(), {}, {.tolerance = 1e-6, .damping = rate}), dt);
-    if (rate == 0) CHECK(explicitly > 0.8);
+    if (rate == 0) CHECK(explicitly > 0.7);
     if (rate > 0) CHECK(explicitly < 0.6);
     CHECK(implicitly == doctest::Approx(explicitly).epsilon(0.15));
   }

@@ -67,6 +67,7 @@ TEST_CASE("a linear velocity field strains all points inside alike") {
     for (int p = 0; p < grain.points(); ++p) grain.velocity[p] = A * grain.position[p];
     const std::vector<Vec<2>> start = grain.position;
     UpdatedLagrangianDynamics dynamics = free_grain(std::move(grain), shape);
+    dynamics.options.pic_share = 0;  // else what nodes near the border feel goes further in
     const double dt = stable();
     dynamics.step(dt);
     int inside = 0;
