@@ -220,8 +220,10 @@ std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, 
   assert(margin <= largest_margin);
   if (moved_far(state)) find_candidates(grains, state);
   half_way_.resize(state.position.size());
-  for (std::size_t v = 0; v < half_way_.size(); ++v)
-    half_way_[v] = 0.5 * (state.start[v] + state.position[v]);
+  parallel_for(static_cast<int>(parts_.size()), [&](int k) {
+    for (int v = parts_[k].begin; v < parts_[k].end; ++v)
+      half_way_[v] = 0.5 * (state.start[v] + state.position[v]);
+  });
   parallel_for(static_cast<int>(parts_.size()),
                [&](int k) { find_contacts(grains, state, margin * segment_, parts_[k]); });
   std::size_t count = 0;
