@@ -92,6 +92,29 @@ TEST_CASE("memory and disk of many small bonded grains are within a factor of tw
   CHECK(std::abs(std::log2(e.disk / 453e6)) < 1);
 }
 
+TEST_CASE("the hours of elastic grains are within a factor of two of what they took at any speed") {
+  // CPU time of 20 grains of 6 cells under a lid to eps = 0.3, and of one of 16 cells between plates to 0.1
+  Case c;
+  c.experiment = {.loading = "compaction", .model = "mpm"};
+  c.mpm.cells = 6;
+  c.loading.max_strain = 0.3;
+  struct Measured {
+    double speed, seconds;
+  };
+  for (const auto& [speed, seconds] : {Measured{5, 0.58}, {0.5, 1.3}, {1e-2, 7.0}, {1e-3, 9.4}}) {
+    CAPTURE(speed);
+    c.loading.wall_velocity = speed;
+    CHECK(std::abs(std::log2(3600 * estimate(c).hours / seconds)) < 1);
+  }
+  c.experiment.loading = "diametral";
+  c.mpm.cells = 16;
+  c.loading.max_strain = 0.1;
+  for (const double speed : {0.2, 1e-2, 1e-3, 1.67e-5}) {
+    c.loading.wall_velocity = speed;
+    CHECK(std::abs(std::log2(3600 * estimate(c).hours / 0.32)) < 1);
+  }
+}
+
 TEST_CASE("a run writes no more snapshots than it has steps") {
   Case c;
   c.output.snapshots = 100000;
