@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "reliability/tiny_cases.hpp"
+#include "softgrain/io/snapshot.hpp"
 
 using namespace softgrain::test;
 
@@ -11,6 +12,20 @@ TinyCase ending_at(const std::string& name, const std::string& max_strain, const
   tiny.settings.push_back("loading.max_strain=" + max_strain);
   tiny.settings.insert(tiny.settings.end(), more.begin(), more.end());
   return tiny;
+}
+
+/// The last states of two runs, bit for bit. (Their reports may differ: the energy is measured where rows are
+/// written, which are shares of the way to the end.)
+bool same_states(const Workshop& workshop, const std::string& a, const std::string& b) {
+  const auto state = [&](const std::string& run) {
+    return softgrain::read_snapshot(workshop.snapshots(run).back()).checkpoint;
+  };
+  const auto first = state(a), second = state(b);
+  if (first.step != second.step || first.arrays.size() != second.arrays.size()) return false;
+  return std::all_of(first.arrays.begin(), first.arrays.end(), [&](const auto& named) {
+    const auto other = second.arrays.find(named.first);
+    return other != second.arrays.end() && other->second.values == named.second.values;
+  });
 }
 
 }  // namespace
@@ -26,16 +41,11 @@ TEST_CASE("a run that was done goes further, and ends as the run that had the la
     const Workshop workshop;
     REQUIRE(run_tiny(workshop, ending_at(ends.name, ends.last), "whole").exit_code == 0);
     REQUIRE(run_tiny(workshop, ending_at(ends.name, ends.first), "parts").exit_code == 0);
-    CHECK(workshop.last_hash("parts") != workshop.last_hash("whole"));
+    CHECK_FALSE(same_states(workshop, "parts", "whole"));
     const auto further = run_tiny(workshop, ending_at(ends.name, ends.last), "parts", {"--resume"});
     CHECK_MESSAGE(further.exit_code == 0, further.err);
-    CHECK(workshop.last_hash("parts") == workshop.last_hash("whole"));
+    CHECK(same_states(workshop, "parts", "whole"));
     CHECK(read_text(workshop.path("parts/case.toml")) == read_text(workshop.path("whole/case.toml")));
-    const auto last_row = [&](const std::string& run) {
-      const std::string series = workshop.series(run);
-      return series.substr(series.rfind('\n', series.size() - 2));
-    };
-    CHECK(last_row("parts").substr(0, 40) == last_row("whole").substr(0, 40));
     CHECK(workshop.intact("parts"));
     CHECK(workshop.softgrain({"info", "parts"}).out.find("parts: a run, done\n") != std::string::npos);
   }
@@ -49,7 +59,7 @@ TEST_CASE("a run that goes further can be stopped and resumed on the way") {
   CHECK(run_tiny(workshop, ending_at(name, "0.1"), "parts", {"--resume", "--stop-after", "1 ms"}).exit_code ==
         75);
   CHECK(workshop.softgrain({"resume", "parts", "-q"}).exit_code == 0);
-  CHECK(workshop.last_hash("parts") == workshop.last_hash("whole"));
+  CHECK(same_states(workshop, "parts", "whole"));
 }
 
 TEST_CASE("what is not the same case with a later end is refused, with the key") {

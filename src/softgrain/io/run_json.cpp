@@ -141,6 +141,8 @@ RunRecord read_run_record(const std::filesystem::path& path) {
     record.command = json.at("command").get<std::vector<std::string>>();
     record.started = json.at("started");
     record.resumes = json.at("resumes");
+    record.state = json.at("state");
+    record.step = json.at("step");
     return record;
   } catch (const std::exception& error) {
     throw IoError(fmt::format("{}: not a run.json: {}", path.string(), error.what()));
