@@ -29,8 +29,8 @@ MpmSetup setup_of(const Case& c) {
   if (c.experiment.loading == "diametral") {
     setup.grains.push_back(
         {.topology = shape, .radius = c.grain.radius, .centre = {}, .angle = 0, .velocity = {}});
-    double reach = 0;  // the outline is symmetric about both axes
-    for (const Vec<2>& X : shape->grid.outline()) reach = std::max(reach, X[1] * c.grain.radius);
+    double reach = 0;  // of the circle through the vertices, which plates meet
+    for (const Vec<2>& X : shape->grid.outline()) reach = std::max(reach, norm(X) * c.grain.radius);
     setup.walls = {{.point = {0, -reach}, .normal = {0, 1}, .velocity = {}},
                    {.point = {0, reach}, .normal = {0, -1}, .velocity = {}}};
     return setup;
