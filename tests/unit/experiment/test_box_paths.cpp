@@ -163,7 +163,7 @@ TEST_CASE("walls keep the stress of a packing that they are asked to keep") {
 }
 
 TEST_CASE("a held stress is kept, in grains soft and stiff, and never far exceeded") {
-  for (const double young_modulus : {1e6, 1e10}) {
+  for (const double young_modulus : {1e6, 1e9}) {
     CAPTURE(young_modulus);
     Case c = soft_packing("compaction");
     c.mpm.young_modulus = young_modulus;
