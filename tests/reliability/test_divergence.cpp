@@ -22,12 +22,10 @@ struct Breakdown {
   Words words;
 };
 
-const Words fast_plate{"loading.wall_velocity=\"1e5 m/s\"", "loading.unload_at=[]"};
-
 const std::vector<Breakdown> breakdowns{
     // walls too fast
     {"compaction-mpm",
-     {"mpm.integrator=\"explicit\"", "mpm.time_step=0", "loading.wall_velocity=\"500 m/s\"",
+     {"mpm.integrator=\"explicit\"", "mpm.time_step=0", "loading.wall_velocity=\"250 m/s\"",
       "loading.unload_at=[]"},
      {"turned inside out", "use a smaller time step"}},
     {"compaction-mpm",
@@ -47,19 +45,21 @@ const std::vector<Breakdown> breakdowns{
       "mpm.integrator=\"explicit\"", "mpm.time_step=0", "loading.wall_velocity=\"10 m/s\""},
      {"grain 0 is turned inside out"}},
     {"diametral-bpm", {"contact.friction=1e300"}, {"step 1: the velocity of particle 0 is not finite"}},
-    {"diametral-mpm", fast_plate, {"step 1: no step", "halved 8 times", "than half a grain in grain 0"}},
+    {"diametral-mpm",
+     {"loading.wall_velocity=\"1e5 m/s\"", "loading.unload_at=[]", "loading.max_strain=2"},
+     {"step 1: no step", "of the explicit one", "in grain 0"}},
     // a tolerance that no iteration reaches
     {"diametral-mpm",
      {"mpm.tolerance=1e-17"},
      {"step 1: no step", "dt = 7.81e-08 s", "Newton's method does not converge in grain 0",
-      "larger tolerance"}},
+      "a larger tolerance"}},
     // walls that leave no room
     {"diametral-bpm",
      {"loading.max_strain=2.9", "loading.unload_at=[]", "loading.wall_velocity=\"20 m/s\""},
      {"primaries overlap by", "use a smaller time.step"}},
     {"compaction-mpm",
      {"loading.max_strain=2.9", "mpm.law=\"corotated\"", "mpm.cells=2", "sample.grains=3"},
-     {"no step", "halved 8 times", "in grain "}},
+     {"no step", "of the explicit one", "in grain "}},
 };
 
 /// The message of the error that the next step ends with.
@@ -89,7 +89,7 @@ TEST_CASE(
     CHECK(result.exit_code == 3);
     CHECK(result.err.find("error: step ") == 0);
     for (const std::string& word : words) CHECK(result.err.find(word) != std::string::npos);
-    CHECK(result.err.find("use a smaller ") != std::string::npos);
+    CHECK(result.err.find("use a ") != std::string::npos);
     CHECK(result.err.find("the last good state is out/snap/s") != std::string::npos);
     CHECK(workshop.intact("out"));
     CHECK(nlohmann::json::parse(read_text(workshop.path("out/run.json"))).at("state") == "failed");
@@ -110,7 +110,7 @@ TEST_CASE("a NaN ends the step in which it comes up, and the grain or particle i
   implicit.grains.batches[0].velocity[0][0].set(1, not_a_number);
   const std::string message = error_of([&] { implicit.step(1e-6); });
   CAPTURE(message);
-  CHECK(message.find("halved 8 times") != std::string::npos);
+  CHECK(message.find("of the explicit one") != std::string::npos);
   CHECK(message.find("in grain 1") != std::string::npos);
 
   UpdatedLagrangianDynamics lagrangian({disk_of_points(1e-3, {}, 2e-4, 24)}, {floor_at(-1e-3)},
@@ -120,7 +120,7 @@ TEST_CASE("a NaN ends the step in which it comes up, and the grain or particle i
         "a velocity of grain 0 is not finite; use a smaller time step");
 }
 
-TEST_CASE("a step that fails is halved up to eight times and taken back as it was") {
+TEST_CASE("a step that fails is divided, given up far below the explicit one, and taken back as it was") {
   const SoftGrains grains({placed(disk(2), 1e-3, {0, 0})}, make_law("neo_hookean", 1e6, 0.3), 1000);
   ImplicitDynamics dynamics(
       grains, {floor_at(-0.5e-3), {.point = {0, -0.6e-3}, .normal = {0, -1}, .velocity = {0, 1}}}, {});
@@ -128,7 +128,7 @@ TEST_CASE("a step that fails is halved up to eight times and taken back as it wa
   dynamics.grains.gather_outline(before);
   const std::string message = error_of([&] { dynamics.step(256e-6); });
   CAPTURE(message);
-  CHECK(message.find("down to dt = 1e-06 s, halved 8 times") != std::string::npos);
+  CHECK(message.find("of the explicit one") != std::string::npos);
   dynamics.grains.gather_outline(after);
   CHECK(after == before);
   CHECK(dynamics.walls[1].point[1] == -0.6e-3);

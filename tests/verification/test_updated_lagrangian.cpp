@@ -157,7 +157,7 @@ TEST_CASE(
       CHECK(error[3] > 0.1);
       CHECK(error[3] < 0.5 * error[0]);
     } else if (choice.shape == ShapeFunction::bilinear) {
-      CHECK(error[3] < -0.08);
+      CHECK(error[3] < -0.05);
       CHECK(error[3] > -0.2);
     } else {
       for (const double e : error) CHECK(std::abs(e) < 0.06);

@@ -6,9 +6,9 @@ namespace softgrain {
 
 void check_wall_motion(std::span<const Wall<2>> walls, double dt, double smallest_radius) {
   for (std::size_t a = 0; a < walls.size(); ++a) {
-    if (const double motion = dt * norm(walls[a].velocity); !(motion <= smallest_radius / 2))
+    if (const double motion = dt * norm(walls[a].velocity); !(motion <= smallest_radius / 10))
       throw NumericalError(fmt::format(
-          "wall {} moves by {:.3g} m in a step, more than half the smallest radius {:.3g} m; use a "
+          "wall {} moves by {:.3g} m in a step, more than a tenth of the smallest radius {:.3g} m; use a "
           "smaller time step or a slower wall",
           a, motion, smallest_radius));
     for (std::size_t b = 0; b < a; ++b)

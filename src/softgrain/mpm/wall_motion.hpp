@@ -6,8 +6,8 @@
 
 namespace softgrain {
 
-/// Raises NumericalError if a wall goes further in dt [s] than half the smallest radius [m], or not by a
-/// number, or if walls that face each other have met: no grain is left between them.
+/// Raises NumericalError if a wall goes further in dt [s] than a tenth of the smallest radius [m], or not by
+/// a number, or if walls that face each other have met: no grain is left between them.
 void check_wall_motion(std::span<const Wall<2>> walls, double dt, double smallest_radius);
 
 /// The velocity that walls give to what lies between them, linear from each to the one that it faces:
