@@ -198,6 +198,7 @@ std::vector<Quantity> BpmCompaction::observe() {
       packing_row({.width = width(),
                    .height = height,
                    .radius = radius,
+                   .grain_area = total_area(outline, begin),
                    .centre = centre,
                    .outline = outline,
                    .outline_begin = begin,

@@ -13,7 +13,6 @@
 #include "softgrain/geometry/polygon.hpp"
 #include "softgrain/math/tensor.hpp"
 #include "softgrain/mpm/equilibrium.hpp"
-#include "softgrain/observe/outlines.hpp"
 
 namespace softgrain {
 namespace {
@@ -218,7 +217,7 @@ std::vector<Quantity> MpmSimulation<Dynamics>::observe() {
     const double approach = dynamics_.walls[top_wall].velocity[1] - dynamics_.walls[bottom_wall].velocity[1];
     append(soft_packing_row(view(), approach / height));
   } else {
-    row.push_back({"area_ratio", "", total_area(outline, outline_begins(grains)) / start_area});
+    row.push_back({"area_ratio", "", grain_area(grains) / start_area});
   }
   row.push_back({"least_J", "", least_J});
   row.push_back({"contacts", "", static_cast<double>(contacts)});

@@ -12,7 +12,7 @@ namespace softgrain {
 std::vector<Quantity> packing_row(const PackingView& packing) {
   const double area = packing.width * packing.height;
   const auto grains = static_cast<int>(packing.radius.size());
-  const PackingFraction phi = packing_fraction(packing.radius, packing.outline, packing.outline_begin, area);
+  const PackingFraction phi = packing_fraction(packing.radius, packing.grain_area, area);
   const ContactNetwork network = contact_network(packing.contacts, grains);
   const Coordination neighbours = coordination(network);
   const Mat<2> motion = kinetic_stress(packing.mass, packing.velocity, area);

@@ -12,6 +12,7 @@ namespace softgrain {
 struct PackingView {
   double width = 0, height = 0;        ///< of the box [m]
   std::span<const double> radius;      ///< of the undeformed grains [m]
+  double grain_area = 0;               ///< sum of A_g, of the deformed grains [m^2]
   std::span<const Vec<2>> centre;      ///< of mass, of each grain [m]
   std::span<const Vec<2>> outline;     ///< vertices of all grains, each counter-clockwise [m]
   std::span<const int> outline_begin;  ///< (grains + 1) first vertex of each grain

@@ -8,6 +8,7 @@
 #include "softgrain/experiment/arrays.hpp"
 #include "softgrain/experiment/packing_row.hpp"
 #include "softgrain/experiment/plate_path.hpp"
+#include "softgrain/geometry/polygon.hpp"
 #include "softgrain/math/tensor.hpp"
 #include "softgrain/mpm/elastic_contacts.hpp"
 #include "softgrain/mpm/equilibrium.hpp"
@@ -47,6 +48,17 @@ std::vector<ContactPoint> contact_points(const SoftView& view) {
   return points;
 }
 
+double grain_area(const SoftGrains& grains) {
+  std::vector<Vec<2>> outline;
+  grains.gather_outline(outline);
+  double area = 0;
+  for (int g = 0; g < grains.size(); ++g) {
+    const int begin = grains.outline_begin(g), end = grains.outline_end(g);
+    area += grains.topology(g).grid.fullness * polygon_area(std::span(outline).subspan(begin, end - begin));
+  }
+  return area;
+}
+
 std::vector<Quantity> soft_packing_row(const SoftView& view, double strain_rate) {
   const SoftGrains& grains = view.grains;
   std::vector<double> radius, mass;
@@ -66,6 +78,7 @@ std::vector<Quantity> soft_packing_row(const SoftView& view, double strain_rate)
   return packing_row({.width = view.walls[right_wall].point[0] - view.walls[left_wall].point[0],
                       .height = view.walls[top_wall].point[1] - view.walls[bottom_wall].point[1],
                       .radius = radius,
+                      .grain_area = grain_area(grains),
                       .centre = centre,
                       .outline = outline,
                       .outline_begin = begin,
@@ -110,7 +123,8 @@ Scene soft_scene(const SoftView& view) {
         x += shape.points[p].shape[a] * grains.node_position(g, shape.grid.cell[p / 4][a]);
       const double J = determinant(states[p].F);
       position.push_back(x);
-      radius.push_back(grains.radius(g) * std::sqrt(J * shape.points[p].volume / std::numbers::pi));
+      const double V = shape.grid.fullness * shape.points[p].volume;
+      radius.push_back(grains.radius(g) * std::sqrt(J * V / std::numbers::pi));
       pressure.push_back(states[p].pressure);
       dilatation.push_back(J);
       stress.insert(stress.end(), states[p].stress.c.begin(), states[p].stress.c.end());

@@ -23,6 +23,9 @@ struct SoftView {
 /// (grains + 1) first outline vertex of each grain.
 std::vector<int> outline_begins(const SoftGrains& grains);
 
+/// sum of A_g [m^2]: pi R^2 times the mean J of a disk, by the polygons of the vertices (theory (54)).
+double grain_area(const SoftGrains& grains);
+
 /// Contacts that carry impulse. A vertex takes half of the segments beside it, and half of that where the
 /// other grain's vertices touch too.
 std::vector<ContactPoint> contact_points(const SoftView& view);

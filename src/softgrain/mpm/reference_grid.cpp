@@ -128,19 +128,18 @@ ReferenceGrid disk_grid(int n) {
     ring[2 * n + k] = inner(n - k, n);
     ring[3 * n + k] = inner(0, n - k);
   }
-  // the outline is the regular polygon of area pi
-  const double radius = std::sqrt(2 * std::numbers::pi / (around * std::sin(2 * std::numbers::pi / around)));
   for (int layer = 1; layer <= rings; ++layer) {
     const double share = std::pow(static_cast<double>(layer) / rings, ring_exponent);
     const int begin = grid.nodes();
     for (int k = 0; k < around; ++k) {
       const int next = (k + 1) % around;
-      grid.node.push_back((1 - share) * inner_border(k, n) + share * radius * unit_circle(k, around));
+      grid.node.push_back((1 - share) * inner_border(k, n) + share * unit_circle(k, around));
       grid.cell.push_back({ring[k], begin + k, begin + next, ring[next]});
     }
     for (int k = 0; k < around; ++k) ring[k] = begin + k;
   }
   grid.outline_begin = grid.nodes() - around;
+  grid.fullness = std::numbers::pi / polygon_area(grid.outline());
   return grid;
 }
 
@@ -151,6 +150,7 @@ ReferenceGrid polygon_grid(std::span<const Vec<2>> vertices, int n) {
   if (polygon_area(ordered) < 0) std::reverse(ordered.begin(), ordered.end());
   ReferenceGrid grid = disk_grid(n);
   map_to_outline(grid, resample_polygon(ordered, 4 * n));
+  grid.fullness = 1;
   for (const MaterialPoint& point : material_points(grid))
     require(point.volume > 0,
             "the outline of {} vertices is so concave that a cell of its grid folds; use more cells or a "

@@ -17,14 +17,16 @@ struct ReferenceGrid {
   std::vector<Vec<2>> node;              ///< (nodes) X
   std::vector<std::array<int, 4>> cell;  ///< (cells) nodes, counter-clockwise
   int outline_begin = 0;                 ///< first node of the outline
+  double fullness = 1;                   ///< area of the body over that of the cells
 
   int nodes() const { return static_cast<int>(node.size()); }
   int outline_nodes() const { return nodes() - outline_begin; }
   std::span<const Vec<2>> outline() const { return std::span(node).subspan(outline_begin); }
 };
 
-/// A disk of unit radius; the outline polygon is enlarged to the area pi of the circle. `n` is the number of
-/// cells along a side of the inner square. Raises UsageError for n < 2.
+/// A disk of unit radius: the outline is the regular polygon on the circle, which the smooth outline leaves
+/// nowhere outwards, and `fullness` is pi over its area. `n` is the number of cells along a side of the inner
+/// square. Raises UsageError for n < 2.
 ReferenceGrid disk_grid(int n);
 
 /// Any simple polygon, resampled to 4n points with all its vertices kept; interior nodes at the mean of their

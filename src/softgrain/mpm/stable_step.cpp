@@ -82,9 +82,10 @@ double largest_square_frequency(const SoftGrains& grains, const GrainBatch& batc
     const Wide square = largest_eigenvalue(K, &batch.topology->points[4 * cell], largest);
     largest = select(square > largest, square, largest);
   });
+  const double density = grains.density * batch.topology->grid.fullness;
   double most = 0;
   for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
-    most = std::max(most, largest[lane] / (grains.density * batch.radius[lane] * batch.radius[lane]));
+    most = std::max(most, largest[lane] / (density * batch.radius[lane] * batch.radius[lane]));
   return most;
 }
 

@@ -65,10 +65,11 @@ Topology::Topology(ReferenceGrid reference_grid)
       points(material_points(grid)),
       node_volume(grid.nodes(), 0),
       arc(arcs_of(grid.outline())),
-      area(polygon_area(grid.outline())),
+      area(grid.fullness * polygon_area(grid.outline())),
       pattern(pattern_of(grid)) {
   for (std::size_t p = 0; p < points.size(); ++p)
-    for (int a = 0; a < 4; ++a) node_volume[grid.cell[p / 4][a]] += points[p].shape[a] * points[p].volume;
+    for (int a = 0; a < 4; ++a)
+      node_volume[grid.cell[p / 4][a]] += grid.fullness * points[p].shape[a] * points[p].volume;
   for (std::size_t p = 0; p < points.size(); p += 4)
     cell_shapes.push_back(shape_of(std::span(points).subspan(p).first<4>()));
   for (const auto& cell : grid.cell)

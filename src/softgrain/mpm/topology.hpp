@@ -39,9 +39,9 @@ struct Topology {
   ReferenceGrid grid;
   std::vector<MaterialPoint> points;  ///< (4 cells)
   std::vector<CellShape> cell_shapes;
-  std::vector<double> node_volume;  ///< (nodes) sum_p N_i V_p [R^2]: the lumped mass over rho R^2
+  std::vector<double> node_volume;  ///< (nodes) fullness sum_p N_i V_p [R^2]: the lumped mass over rho R^2
   std::vector<OutlineArc> arc;      ///< (outline vertices)
-  double area = 0;                  ///< of the outline [R^2]
+  double area = 0;                  ///< of the body, pi for a disk [R^2]
   BlockPattern pattern;
   std::vector<CellBlock>
       cell_blocks;  ///< (10 cells): the pairs (a, b), b <= a, of the four nodes of each cell

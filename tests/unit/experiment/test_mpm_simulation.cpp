@@ -130,7 +130,7 @@ TEST_CASE("the coordination number of a packing is that of the pairs that carry 
 TEST_CASE("one grain between plates starts at rest between them, and turns back where asked") {
   const auto simulation = create_mpm_simulation(one_grain());
   const auto start = simulation->observe();
-  CHECK(value_of(start, "wall_height") == doctest::Approx(2 * 5e-3).epsilon(0.02));  // a polygon of 16 sides
+  CHECK(value_of(start, "wall_height") == doctest::Approx(2 * 5e-3));
   CHECK(value_of(start, "force_top") == 0);
   int turns = 0;
   while (!simulation->finished()) {

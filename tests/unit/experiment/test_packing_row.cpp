@@ -45,6 +45,7 @@ TEST_CASE("a square packing of square grains shows what can be counted by hand")
   for (const Quantity& quantity : packing_row({.width = side,
                                   .height = side,
                                   .radius = radius,
+                                  .grain_area = 4.0 * n * n,
                                   .centre = centre,
                                   .outline = outline,
                                   .outline_begin = begin,

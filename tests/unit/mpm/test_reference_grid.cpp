@@ -58,7 +58,8 @@ TEST_CASE("shapes sum to one and reproduce linear fields, and points fill the ou
     CAPTURE(n);
     const ReferenceGrid grid = disk_grid(n);
     check_points(grid);
-    CHECK(polygon_area(grid.outline()) == doctest::Approx(std::numbers::pi).epsilon(1e-13));
+    CHECK(grid.fullness * polygon_area(grid.outline()) == doctest::Approx(std::numbers::pi).epsilon(1e-13));
+    for (const Vec<2>& X : grid.outline()) CHECK(norm(X) == doctest::Approx(1).epsilon(1e-14));
     CHECK(grid.outline_nodes() == 4 * n);
   }
 }
@@ -88,6 +89,7 @@ TEST_CASE("a grid fitted to an ellipse or a pentagon keeps its vertices and its 
     const ReferenceGrid grid = polygon_grid(outline, 8);
     check_points(grid);
     CHECK(polygon_area(grid.outline()) == doctest::Approx(polygon_area(outline)).epsilon(1e-13));
+    CHECK(grid.fullness == 1);
     for (const Vec<2>& vertex : outline) CHECK(std::ranges::count(grid.outline(), vertex) == 1);
   }
 }

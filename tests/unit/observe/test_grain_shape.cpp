@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "softgrain/observe/outlines.hpp"
 #include "softgrain/observe/packing.hpp"
 
 using namespace softgrain;
@@ -56,7 +57,8 @@ TEST_CASE("the cell of a hexagonal packing is filled to pi/(2 sqrt 3) by disks a
   std::vector<Vec<2>> hexagons = polygon(6, 2 / std::sqrt(3.0), 2 / std::sqrt(3.0), 0.5);
   const auto other = hexagons;
   hexagons.insert(hexagons.end(), other.begin(), other.end());
-  const PackingFraction phi = packing_fraction(radius, hexagons, std::vector<int>{0, 6, 12}, box_area);
+  const PackingFraction phi =
+      packing_fraction(radius, total_area(hexagons, std::vector<int>{0, 6, 12}), box_area);
   CHECK(phi.undeformed == doctest::Approx(std::numbers::pi / (2 * std::sqrt(3.0))));
   CHECK(phi.deformed == doctest::Approx(1));
 }

@@ -1,0 +1,104 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "softgrain/experiment/create.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+Case packing(int cells, const char* integrator, int grains = 100) {
+  Case c;
+  c.experiment = {.loading = "compaction", .model = "mpm"};
+  c.mpm.cells = cells;
+  c.mpm.integrator = integrator;
+  c.sample.grains = grains;
+  c.sample.packing_fraction = 0.7;
+  c.loading = {.wall_velocity = 1e-3, .max_strain = 0.01, .unload_at = {}};
+  return c;
+}
+
+double value_of(const std::vector<Quantity>& row, std::string_view name) {
+  const auto found = std::ranges::find(row, name, &Quantity::name);
+  REQUIRE(found != row.end());
+  return found->value;
+}
+
+/// No contact carries and no energy is there, over E R^2; areas are those of the case.
+void check_at_rest(const Case& c, Simulation& simulation) {
+  const auto row = simulation.observe();
+  const double R = c.sample.largest_diameter / 2, unit = c.mpm.young_modulus * R * R;
+  CHECK(value_of(row, "contacts") == 0);
+  CHECK(std::abs(value_of(row, "elastic_energy")) < 1e-12 * unit);
+  CHECK(std::abs(value_of(row, "dissipation_contact")) < 1e-12 * unit);
+  CHECK(value_of(row, "kinetic_energy") < 1e-12 * unit);
+  CHECK(value_of(row, "phi") == doctest::Approx(c.sample.packing_fraction).epsilon(1e-5));
+  CHECK(value_of(row, "area_ratio") == doctest::Approx(1).epsilon(1e-9));
+}
+
+}  // namespace
+
+TEST_CASE("grains of few cells start without overlap and store nothing at once") {
+  for (const int cells : {2, 3, 4, 5, 6})
+    for (const char* integrator : {"implicit", "explicit"}) {
+      CAPTURE(cells);
+      CAPTURE(integrator);
+      Case c = packing(cells, integrator);
+      c.mpm.time_step = 4e-8;  // the lid moves by nothing
+      const auto simulation = create_simulation(c);
+      check_at_rest(c, *simulation);
+      simulation->step();
+      check_at_rest(c, *simulation);
+    }
+}
+
+TEST_CASE("an explicit start of grains of two cells does not depend on the step") {
+  for (const double step : {9e-8, 4e-8, 1e-8}) {
+    CAPTURE(step);
+    Case c = packing(2, "explicit", 300);
+    c.mpm.time_step = step;
+    const auto simulation = create_simulation(c);
+    for (int k = 0; k < 20; ++k) simulation->step();
+    check_at_rest(c, *simulation);
+  }
+}
+
+TEST_CASE("grains of two cells take no more Newton iterations at the start than grains of three") {
+  const auto iterations = [](int cells) {
+    Case c = packing(cells, "implicit", 300);
+    c.loading.wall_velocity = 5;
+    const auto simulation = create_simulation(c);
+    int sum = 0;
+    for (int k = 0; k < 5; ++k) {
+      simulation->step();
+      sum += static_cast<int>(value_of(simulation->observe(), "iterations"));
+    }
+    return sum;
+  };
+  CHECK(iterations(2) <= iterations(3));
+}
+
+TEST_CASE("a grain of any number of cells starts between plates that only touch it") {
+  for (const int cells : {2, 3, 4, 5, 8})
+    for (const char* integrator : {"implicit", "explicit"}) {
+      CAPTURE(cells);
+      CAPTURE(integrator);
+      Case c;
+      c.experiment = {.loading = "diametral", .model = "mpm"};
+      c.mpm.cells = cells;
+      c.mpm.integrator = integrator;
+      c.mpm.time_step = 1e-7;
+      c.loading = {.wall_velocity = 2e-5, .max_strain = 1e-3, .unload_at = {}};
+      const auto simulation = create_simulation(c);
+      CHECK(value_of(simulation->observe(), "wall_height") == doctest::Approx(2 * c.grain.radius));
+      CHECK(value_of(simulation->observe(), "area_ratio") == doctest::Approx(1));
+      simulation->step();
+      const auto row = simulation->observe();
+      const double unit = c.mpm.young_modulus * c.grain.radius * c.grain.radius;
+      CHECK(std::abs(value_of(row, "elastic_energy")) < 1e-12 * unit);
+      CHECK(value_of(row, "kinetic_energy") < 1e-12 * unit);
+    }
+}
