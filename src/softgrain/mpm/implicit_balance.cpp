@@ -11,29 +11,56 @@ void ImplicitDynamics::catch_problem(double dt) {
   caught = {contact_problem_of<2>(system, friction_of_contacts()), flat<2>(impulse)};
 }
 
-/// What Newton's tolerance left of sum_i m_i (v - v_n)_i = dt f_ext + H p is given back to each grain as a
-/// whole; in a quasi-static step to a grain that touches others, no more than one more correction would.
+/// What Newton's tolerance left of the momentum and backward Euler of the angular momentum about the centre,
+///   sum_i m_i (v - v_n)_i = dt f_ext + H p,   L = L_n + dt sum_i (x - x_c)_i x f_i,
+/// is given back to each grain as a whole; in a quasi-static step to a grain that touches others, no more
+/// than one more correction would. What it changes of the kinetic energy, backward Euler had taken.
 void ImplicitDynamics::balance_momentum(double dt) {
   const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
   const double t = step_of_matrix(dt);
+  std::vector<Wide> given(batches());  // kinetic energy
   parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];
-    WideVectors missing(batch.position.size());
-    grains.scatter_outline(force, batch, missing);
-    Wide mass = 0.0;
-    Vec<2, Wide> sum{};
-    for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
+    WideVectors outer(batch.position.size());
+    grains.scatter_outline(force, batch, outer);
+    const auto cross = [](const Vec<2, Wide>& u, const Vec<2, Wide>& v) { return u[0] * v[1] - u[1] * v[0]; };
+    const int nodes = batch.topology->grid.nodes();
+    Wide mass = 0.0, inertia = 0.0, spin = 0.0, kinetic = 0.0;
+    Vec<2, Wide> sum{}, first{}, first_start{};
+    for (int i = 0; i < nodes; ++i) {
       const Wide m = grains.node_mass(batch, i);
       mass += m;
-      const Vec<2, Wide> flight = flight_velocity(b, i);
-      for (int d = 0; d < 2; ++d)
-        sum[d] +=
-            dt * (missing[i][d] + m * Wide(options.gravity[d])) - m * (batch.velocity[i][d] - flight[d]);
+      first += m * batch.position[i];
+      first_start += m * start_[b][i];
     }
-    const Wide touching = t * t / (dt * dt);
-    const Wide share = (touching + flying_[b] * (Wide(1) - touching)) / mass;
-    for (Vec<2, Wide>& v : batch.velocity) v += share * sum;
+    const Vec<2, Wide> centre = (1.0 / mass) * first, centre_start = (1.0 / mass) * first_start;
+    for (int i = 0; i < nodes; ++i) {
+      const Wide m = grains.node_mass(batch, i);
+      const Vec<2, Wide> flight = flight_velocity(b, i), x = batch.position[i] - centre;
+      Vec<2, Wide> change;  // dt f
+      for (int d = 0; d < 2; ++d) {
+        change[d] = dt * (outer[i][d] + m * Wide(options.gravity[d]));
+        sum[d] += change[d] - m * (batch.velocity[i][d] - flight[d]);
+        change[d] -= dt * force_[b][i][d];
+      }
+      inertia += m * dot(x, x);
+      spin +=
+          m * (cross(start_[b][i] - centre_start, flight) - cross(x, batch.velocity[i])) + cross(x, change);
+      kinetic -= 0.5 * m * dot(batch.velocity[i], batch.velocity[i]);
+    }
+    const Wide touching = t * t / (dt * dt), share = touching + flying_[b] * (Wide(1) - touching);
+    const Vec<2, Wide> dv = (share / mass) * sum;
+    const Wide turn = share * spin / inertia;
+    for (int i = 0; i < nodes; ++i) {
+      Vec<2, Wide>& v = batch.velocity[i];
+      v += dv + turn * Vec<2, Wide>{-(batch.position[i][1] - centre[1]), batch.position[i][0] - centre[0]};
+      kinetic += 0.5 * grains.node_mass(batch, i) * dot(v, v);
+    }
+    given[b] = kinetic;
   });
+  for (int b = 0; b < batches(); ++b)
+    for (int lane = 0; lane < Wide::size && grains.batches[b].grain[lane] >= 0; ++lane)
+      work.inertia -= given[b][lane];
 }
 
 void ImplicitDynamics::add_work() {
@@ -47,7 +74,7 @@ void ImplicitDynamics::add_work() {
     for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
       const Wide m = grains.node_mass(batch, i);
       const Vec<2, Wide> moved = batch.position[i] - start_[b][i];
-      const Vec<2, Wide> dv = batch.velocity[i] - velocity_start_[b][i];
+      const Vec<2, Wide> dv = Wide(1 / outline_.dt) * moved - velocity_start_[b][i];
       internal += dot(force_[b][i], moved);
       inertia += 0.5 * m * dot(dv, dv);
       if (options.damping > 0)  // - f . dx = m (v_n - flight)/dt . dx

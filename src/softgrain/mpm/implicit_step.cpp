@@ -95,8 +95,8 @@ void ImplicitDynamics::give_up(Failure failure, double dt) const {
       dt, dt / explicit_step_, cause, failed_grain_));
 }
 
-/// x at which Newton's method starts: x_n + dt v_n + dt^2 g for grains in flight, in a quasi-static step x_n
-/// for others, whose velocity says how far they fell into their last places, not where they go.
+/// x at which Newton's method starts: x_n + dt v_n (+ dt^2 g in a quasi-static step) for grains in flight,
+/// x_n for others, whose velocity says how far they fell into their last places, not where they go.
 void ImplicitDynamics::start(double dt) {
   grains.gather_outline(outline_.start);
   walls_start_ = walls;
@@ -119,6 +119,7 @@ void ImplicitDynamics::start(double dt) {
   for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
   outline_.walls = walls;
   outline_.dt = dt;
+  outline_.normals_at = quasi_static(dt) ? 1 : 0.5;
 }
 
 /// Grains that carry contacts fly no more.
@@ -134,10 +135,11 @@ void ImplicitDynamics::hold_touching() {
       if (touching[grains.batches[b].grain[lane]]) flying_[b].set(lane, 0);
 }
 
-/// All grains, but in a quasi-static step those that carry contacts or would fly further than is trusted.
+/// All grains, but in a step whose inertia A does not have those that carry contacts or would fly further
+/// than is trusted.
 void ImplicitDynamics::set_flying(double dt) {
   flying_.assign(grains.batches.size(), 1.0);
-  if (!quasi_static(dt)) return;
+  if (step_of_matrix(dt) == dt) return;
   hold_touching();
   for (int b = 0; b < batches(); ++b) {
     const GrainBatch& batch = grains.batches[b];
@@ -290,7 +292,7 @@ ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& re
   });
   if (!none_failed(failed)) return Failure::inverted_point;
   if (caught) catch_problem(dt);
-  if (quasi_static(dt)) hold_touching();
+  if (step_of_matrix(dt) < dt) hold_touching();
   balance_momentum(dt);
   add_work();
   impulse = carried_impulses(grains, contacts, impulse, found_);

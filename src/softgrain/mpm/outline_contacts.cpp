@@ -222,7 +222,7 @@ std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, 
   half_way_.resize(state.position.size());
   parallel_for(static_cast<int>(parts_.size()), [&](int k) {
     for (int v = parts_[k].begin; v < parts_[k].end; ++v)
-      half_way_[v] = 0.5 * (state.start[v] + state.position[v]);
+      half_way_[v] = state.start[v] + state.normals_at * (state.position[v] - state.start[v]);
   });
   parallel_for(static_cast<int>(parts_.size()),
                [&](int k) { find_contacts(grains, state, margin * segment_, parts_[k]); });
