@@ -262,6 +262,7 @@ Checkpoint MpmSimulation<Dynamics>::checkpoint() const {
                static_cast<double>(drive_.state.ended), dynamics_.impulse_time, work.walls, work.gravity,
                work.internal, work.contacts, work.inertia, work.friction, work.damping});
   state.arrays["sums"] = {1, std::move(sums)};
+  state.arrays["fullness"] = {1, std::vector<double>{dynamics_.grains.topology(0).grid.fullness}};
   if constexpr (std::is_same_v<Dynamics, ExplicitDynamics>) save_stable_step(dynamics_.stable, state);
   drive_.save(state);
   if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>)
@@ -271,6 +272,10 @@ Checkpoint MpmSimulation<Dynamics>::checkpoint() const {
 
 template <class Dynamics>
 void MpmSimulation<Dynamics>::restore(const Checkpoint& state) {
+  if (state.arrays.contains("position") && !state.arrays.contains("fullness"))
+    throw IoError(
+        "the checkpoint has no array 'fullness': it is of a version whose grains had vertices outside their "
+        "circles, which would be strained at once here; begin the run anew with --force");
   std::size_t nodes = 0;
   for (const GrainBatch& batch : dynamics_.grains.batches) nodes += batch.position.size();
   std::vector<Vec<2 * Wide::size>> position(nodes), velocity(nodes);

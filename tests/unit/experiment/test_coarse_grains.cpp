@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "softgrain/experiment/create.hpp"
@@ -10,7 +11,7 @@ using namespace softgrain;
 
 namespace {
 
-Case packing(int cells, const char* integrator, int grains = 100) {
+Case packing(int cells, const std::string& integrator, int grains = 100) {
   Case c;
   c.experiment = {.loading = "compaction", .model = "mpm"};
   c.mpm.cells = cells;
@@ -43,7 +44,7 @@ void check_at_rest(const Case& c, Simulation& simulation) {
 
 TEST_CASE("grains of few cells start without overlap and store nothing at once") {
   for (const int cells : {2, 3, 4, 5, 6})
-    for (const char* integrator : {"implicit", "explicit"}) {
+    for (const std::string integrator : {"implicit", "explicit"}) {
       CAPTURE(cells);
       CAPTURE(integrator);
       Case c = packing(cells, integrator);
@@ -83,7 +84,7 @@ TEST_CASE("grains of two cells take no more Newton iterations at the start than 
 
 TEST_CASE("a grain of any number of cells starts between plates that only touch it") {
   for (const int cells : {2, 3, 4, 5, 8})
-    for (const char* integrator : {"implicit", "explicit"}) {
+    for (const std::string integrator : {"implicit", "explicit"}) {
       CAPTURE(cells);
       CAPTURE(integrator);
       Case c;

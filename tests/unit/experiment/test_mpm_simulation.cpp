@@ -164,6 +164,14 @@ TEST_CASE("an integrator that does not exist and a law that does not exist are r
   CHECK_THROWS_AS(create_mpm_simulation(c), UsageError);
 }
 
+TEST_CASE("a checkpoint of grains that were larger than their circles is refused with the remedy") {
+  const auto simulation = create_mpm_simulation(one_grain());
+  Checkpoint old = simulation->checkpoint();
+  CHECK_NOTHROW(simulation->restore(old));
+  old.arrays.erase("fullness");
+  CHECK_THROWS_WITH_AS(simulation->restore(old), doctest::Contains("anew with --force"), IoError);
+}
+
 TEST_CASE("a checkpoint of another case is refused") {
   const auto simulation = create_mpm_simulation(one_grain());
   const Checkpoint other = create_mpm_simulation(small_packing("implicit"))->checkpoint();
