@@ -84,6 +84,9 @@ class ImplicitDynamics {
     too_deep
   };
 
+  /// A correction larger than this, over the mean radius, is not trusted.
+  static constexpr double largest_correction = 0.5;
+
   /// Largest correction of an iteration, over the mean radius, and what is compared with the tolerance: the
   /// same, or, of a quasi-static step, a quarter of it or a tenth of the unbalanced force of a grain over its
   /// contact force, whichever is more.

@@ -195,12 +195,9 @@ TEST_CASE("a packing is compacted until its primaries are close packed, whole, a
   CHECK(row["solid_fraction"] < 0.9);
   CHECK(row["z"] > 2);
   CHECK(row["stress_top"] > 5e5);
-  for (const Vec<2>& x : simulation.dynamics().particles.position) {
-    CHECK(x[0] > 0);
-    CHECK(x[0] < simulation.sample().width);
-    CHECK(x[1] > 0);
-    CHECK(x[1] < simulation.sample().height);
-  }
+  const Vec<2> box{simulation.sample().width, simulation.sample().height};
+  for (const Vec<2>& x : simulation.dynamics().particles.position)
+    for (int d = 0; d < 2; ++d) CHECK((x[d] > 0 && x[d] < box[d]));
 }
 
 TEST_CASE("a packing at rest has the stress of its walls by Love and Weber, and all walls agree") {
