@@ -22,8 +22,9 @@ struct Estimate {
 double first_time_step(const Case& the_case);
 double box_height(const Case& the_case);
 
-/// Kinetic energy of all grains at the speed of the walls [J/m]: a floor for the energies of a run.
-double energy_at_wall_speed(const Case& the_case);
+/// Energy below which a run's balance is not judged [J/m]: that of all grains at the speed of the walls, or,
+/// where an implicit step leaves forces as small as its tolerance, strained by 0.1 %.
+double least_energy(const Case& the_case);
 
 /// Estimates a valid case.
 Estimate estimate(const Case& the_case);

@@ -7,8 +7,8 @@ namespace softgrain {
 struct EnergyBalance {
   /// Largest |energy_error|, and largest energy that came from nothing, -dissipation [J/m].
   double error = 0;
-  /// Largest of the walls' work, kinetic energy and stored energy, and not below the kinetic energy of all
-  /// grains at the speed of the walls [J/m]; 0: no row tells.
+  /// Largest of the walls' work, kinetic energy and stored energy, and not below `least_energy` [J/m]; 0: no
+  /// row tells.
   double scale = 0;
 
   void add(const std::vector<Quantity>& row);

@@ -63,7 +63,7 @@ RunRecorder::RunRecorder(const RunPaths& paths, RunRequest request, Progress& pr
   record_.command = request_.command;
   record_.started = utc_now();
   record_.seed = request_.the_case.sample.seed;
-  record_.report.energy.scale = energy_at_wall_speed(request_.the_case);
+  record_.report.energy.scale = least_energy(request_.the_case);
 }
 
 double RunRecorder::wall_seconds() const {

@@ -50,7 +50,7 @@ void ImplicitDynamics::balance_momentum(double dt) {
     }
     const Wide touching = t * t / (dt * dt), share = touching + flying_[b] * (Wide(1) - touching);
     const Vec<2, Wide> dv = (share / mass) * sum;
-    const Wide turn = share * spin / inertia;
+    const Wide turn = t < dt ? Wide(0) : spin / inertia;
     for (int i = 0; i < nodes; ++i) {
       Vec<2, Wide>& v = batch.velocity[i];
       v += dv + turn * Vec<2, Wide>{-(batch.position[i][1] - centre[1]), batch.position[i][0] - centre[0]};
