@@ -108,7 +108,8 @@ void add_contacts(ReportFrame& frame, const Scene& scene) {
     const Column a = column_of(pair->second, 0), b = column_of(pair->second, 1), f = column_of(force->second);
     frame.contacts_of_grains = scene.contacts.contains("position");
     const std::size_t movable = frame.columns[frame.contacts_of_grains ? "grain.x" : "particle.x"].size();
-    const auto bodies = static_cast<float>(movable + scene.wall_segments.size() / 4);
+    const std::size_t walls = scene.wall_segments.size() / 4;
+    const auto bodies = static_cast<float>(movable + walls);
     for (std::size_t c = 0; c < std::min({a.size(), b.size(), f.size()}); ++c)
       if (f[c] > 0 && std::min(a[c], b[c]) >= 0 && std::max(a[c], b[c]) < bodies)
         chains.push_back({static_cast<int>(a[c]), static_cast<int>(b[c]), double{f[c]}});

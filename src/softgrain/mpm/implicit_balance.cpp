@@ -11,10 +11,11 @@ void ImplicitDynamics::catch_problem(double dt) {
   caught = {contact_problem_of<2>(system, friction_of_contacts()), flat<2>(impulse)};
 }
 
-/// What Newton's tolerance left of the momentum and backward Euler of the angular momentum about the centre,
-///   sum_i m_i (v - v_n)_i = dt f_ext + H p,   L = L_n + dt sum_i (x - x_c)_i x f_i,
-/// is given back to each grain as a whole; in a quasi-static step to a grain that touches others, no more
-/// than one more correction would. What it changes of the kinetic energy, backward Euler had taken.
+/// What Newton's tolerance left of the momentum is given back to each grain as a whole, and to a grain that
+/// touches none what backward Euler took of its angular momentum about the centre:
+///   sum_i m_i (v - v_n)_i = dt f_ext + H p,   L = L_n + dt sum_i (x - x_c)_i x f_i.
+/// A step whose inertia A does not have gives a grain that touches others no more than one more correction
+/// would, and no spin. What this changes of the kinetic energy, backward Euler had taken.
 void ImplicitDynamics::balance_momentum(double dt) {
   const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
   const double t = step_of_matrix(dt);
@@ -25,7 +26,7 @@ void ImplicitDynamics::balance_momentum(double dt) {
     grains.scatter_outline(force, batch, outer);
     const auto cross = [](const Vec<2, Wide>& u, const Vec<2, Wide>& v) { return u[0] * v[1] - u[1] * v[0]; };
     const int nodes = batch.topology->grid.nodes();
-    Wide mass = 0.0, inertia = 0.0, spin = 0.0, kinetic = 0.0;
+    Wide mass = 0.0, inertia = 0.0, spin = 0.0, load = 0.0, kinetic = 0.0;
     Vec<2, Wide> sum{}, first{}, first_start{};
     for (int i = 0; i < nodes; ++i) {
       const Wide m = grains.node_mass(batch, i);
@@ -44,13 +45,14 @@ void ImplicitDynamics::balance_momentum(double dt) {
         change[d] -= dt * force_[b][i][d];
       }
       inertia += m * dot(x, x);
+      load += dot(outer[i], outer[i]);
       spin +=
           m * (cross(start_[b][i] - centre_start, flight) - cross(x, batch.velocity[i])) + cross(x, change);
       kinetic -= 0.5 * m * dot(batch.velocity[i], batch.velocity[i]);
     }
     const Wide touching = t * t / (dt * dt), share = touching + flying_[b] * (Wide(1) - touching);
     const Vec<2, Wide> dv = (share / mass) * sum;
-    const Wide turn = t < dt ? Wide(0) : spin / inertia;
+    const Wide turn = t < dt ? Wide(0) : select(load <= 0.0, spin / inertia, Wide(0));
     for (int i = 0; i < nodes; ++i) {
       Vec<2, Wide>& v = batch.velocity[i];
       v += dv + turn * Vec<2, Wide>{-(batch.position[i][1] - centre[1]), batch.position[i][0] - centre[0]};
