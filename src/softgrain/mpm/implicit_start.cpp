@@ -4,6 +4,13 @@
 #include "softgrain/mpm/implicit_step.hpp"
 
 namespace softgrain {
+namespace {
+
+/// Share of a step, in which inertia counts, at which pairs take their normals: half-way contact would give
+/// no energy at all, but packings then rattle and take twice the time (docs/decisions/0026).
+constexpr double normals_of_fast_steps = 0.65;
+
+}  // namespace
 
 /// x at which Newton's method starts: x_n + dt v_n (+ dt^2 g in a quasi-static step) for grains in flight,
 /// x_n for others, whose velocity says how far they fell into their last places, not where they go.
@@ -29,7 +36,7 @@ void ImplicitDynamics::start(double dt) {
   for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
   outline_.walls = walls;
   outline_.dt = dt;
-  outline_.normals_at = quasi_static(dt) ? 1 : 0.5;
+  outline_.normals_at = quasi_static(dt) ? 1 : normals_of_fast_steps;
 }
 
 /// Grains that carry contacts fly no more.

@@ -55,7 +55,7 @@ struct OutlineState {
   std::vector<Wall<2>> walls;           ///< with their points at the end of the step
   double dt = 0;                        ///< [s]
   /// Share of the step at which pairs take place and normal: half-way contact gives no energy; 1 where the
-  /// step is quasi-static and its end must be an equilibrium.
+  /// step is quasi-static and its end must be an equilibrium (docs/decisions/0026).
   double normals_at = 0.5;
 };
 
