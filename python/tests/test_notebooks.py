@@ -37,7 +37,7 @@ def test_figure_1_in_a_notebook_agrees_with_johnson(tmp_path, monkeypatch):
     said, pictures, tables = carried_out("fig1", tmp_path)
     assert (pictures, tables) == (3, 1)
     error = float(said.partition("within ")[2].partition(" %")[0])
-    assert error < 4
+    assert error < 3
 
 
 def test_friction_takes_work_in_a_notebook(tmp_path, monkeypatch):
