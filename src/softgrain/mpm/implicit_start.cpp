@@ -52,10 +52,13 @@ void ImplicitDynamics::hold_touching() {
       if (touching[grains.batches[b].grain[lane]]) flying_[b].set(lane, 0);
 }
 
-/// All grains, but in a step whose inertia A does not have those that carry contacts or would fly further
-/// than is trusted.
+/// All grains (lanes without one stay where they are), but in a step whose inertia A does not have those that
+/// carry contacts or would fly further than is trusted.
 void ImplicitDynamics::set_flying(double dt) {
   flying_.assign(grains.batches.size(), 1.0);
+  for (int b = 0; b < batches(); ++b)
+    for (int lane = 0; lane < Wide::size; ++lane)
+      if (grains.batches[b].grain[lane] < 0) flying_[b].set(lane, 0);
   if (step_of_matrix(dt) == dt) return;
   hold_touching();
   for (int b = 0; b < batches(); ++b) {
