@@ -152,20 +152,7 @@ double MpmSimulation<Dynamics>::stored_energy() const {
 
 template <class Dynamics>
 std::vector<Quantity> MpmSimulation<Dynamics>::energies() const {
-  const WorkBudget& work = dynamics_.work;
-  const double kinetic = dynamics_.grains.kinetic_energy(), elastic = stored_energy();
-  const double by_integration = work.internal + work.inertia - elastic;
-  return {
-      {"kinetic_energy", "J/m", kinetic},
-      {"elastic_energy", "J/m", elastic},
-      {"wall_work", "J/m", work.walls},
-      {"dissipation", "J/m", work.contacts + by_integration + work.damping},
-      {"dissipation_contact", "J/m", work.contacts},
-      {"dissipation_friction", "J/m", work.friction},
-      {"dissipation_integration", "J/m", by_integration},
-      {"dissipation_damping", "J/m", work.damping},
-      {"energy_error", "J/m",
-       work.walls + work.gravity - kinetic - work.internal - work.inertia - work.contacts - work.damping}};
+  return soft_energies(dynamics_.work, dynamics_.grains.kinetic_energy(), stored_energy());
 }
 
 template <class Dynamics>

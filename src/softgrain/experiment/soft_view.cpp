@@ -59,6 +59,21 @@ double grain_area(const SoftGrains& grains) {
   return area;
 }
 
+std::vector<Quantity> soft_energies(const WorkBudget& work, double kinetic, double elastic) {
+  const double by_integration = work.internal + work.inertia - elastic;
+  return {
+      {"kinetic_energy", "J/m", kinetic},
+      {"elastic_energy", "J/m", elastic},
+      {"wall_work", "J/m", work.walls},
+      {"dissipation", "J/m", work.contacts + by_integration + work.damping},
+      {"dissipation_contact", "J/m", work.contacts},
+      {"dissipation_friction", "J/m", work.friction},
+      {"dissipation_integration", "J/m", by_integration},
+      {"dissipation_damping", "J/m", work.damping},
+      {"energy_error", "J/m",
+       work.walls + work.gravity - kinetic - work.internal - work.inertia - work.contacts - work.damping}};
+}
+
 std::vector<Quantity> soft_packing_row(const SoftView& view, double strain_rate) {
   const SoftGrains& grains = view.grains;
   std::vector<double> radius, mass;

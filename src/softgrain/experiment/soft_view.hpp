@@ -7,6 +7,7 @@
 #include "softgrain/experiment/simulation.hpp"
 #include "softgrain/mpm/outline_contacts.hpp"
 #include "softgrain/mpm/soft_grains.hpp"
+#include "softgrain/mpm/soft_step_report.hpp"
 #include "softgrain/observe/contact_network.hpp"
 
 namespace softgrain {
@@ -29,6 +30,9 @@ double grain_area(const SoftGrains& grains);
 /// Contacts that carry impulse. A vertex takes half of the segments beside it, and half of that where the
 /// other grain's vertices touch too.
 std::vector<ContactPoint> contact_points(const SoftView& view);
+
+/// The columns of energy and what dissipates it [J/m], from what the work of a run was spent on.
+std::vector<Quantity> soft_energies(const WorkBudget& work, double kinetic, double elastic);
 
 /// What a box of soft grains shows (packing_row), at a strain rate [1/s].
 std::vector<Quantity> soft_packing_row(const SoftView& view, double strain_rate);

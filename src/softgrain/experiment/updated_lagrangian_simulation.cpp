@@ -119,11 +119,8 @@ std::vector<Quantity> UpdatedLagrangianSimulation::observe() {
                                       [](const auto& p) { return p[0] > 0; });
   const double duration = sums_.duration > 0 ? sums_.duration : dt_;
   const double force_bottom = sums_.force_bottom / duration, force_top = sums_.force_top / duration;
-  const double kinetic = grain().kinetic_energy(dynamics_.density), elastic = dynamics_.elastic_energy();
-  const WorkBudget& work = dynamics_.work;
-  const double by_integration = work.internal - elastic;
   sums_.force_bottom = sums_.force_top = sums_.duration = 0;
-  return {
+  std::vector<Quantity> row{
       {"step", "", static_cast<double>(step_)},
       {"time", "s", time()},
       {"strain", "", strain()},
@@ -137,16 +134,11 @@ std::vector<Quantity> UpdatedLagrangianSimulation::observe() {
       {"contacts", "", static_cast<double>(contacts)},
       {"area_ratio", "", polygon_area(grain().outline) / grain().area()},
       {"least_J", "", least_J},
-      {"kinetic_energy", "J/m", kinetic},
-      {"elastic_energy", "J/m", elastic},
-      {"wall_work", "J/m", work.walls},
-      {"dissipation", "J/m", work.contacts + by_integration + work.damping},
-      {"dissipation_contact", "J/m", work.contacts},
-      {"dissipation_friction", "J/m", work.friction},
-      {"dissipation_integration", "J/m", by_integration},
-      {"dissipation_damping", "J/m", work.damping},
-      {"energy_error", "J/m", work.walls - kinetic - work.internal - work.contacts - work.damping},
   };
+  const std::vector<Quantity> energies =
+      soft_energies(dynamics_.work, grain().kinetic_energy(dynamics_.density), dynamics_.elastic_energy());
+  row.insert(row.end(), energies.begin(), energies.end());
+  return row;
 }
 
 Scene UpdatedLagrangianSimulation::scene() const {

@@ -111,11 +111,11 @@ int nearest_vertex(const Ring& ring, std::span<const Vec<2>> position, const Vec
   }
 }
 
-/// Where the slave v faces a master half-way through the step, near the vertex `nearest`.
-OutlineContact half_way_contact(std::span<const Vec<2>> half_way, const Ring& ring, int v, int nearest) {
-  const Vec<2>& x = half_way[v];
-  nearest = nearest_vertex(ring, half_way, x, nearest);
-  return curve_contact(half_way, ring, v, facing_segment(ring, half_way, x, nearest));
+/// Where the slave v faces a master at the outlines `position`, near the vertex `nearest`.
+OutlineContact facing_contact(std::span<const Vec<2>> position, const Ring& ring, int v, int nearest) {
+  const Vec<2>& x = position[v];
+  nearest = nearest_vertex(ring, position, x, nearest);
+  return curve_contact(position, ring, v, facing_segment(ring, position, x, nearest));
 }
 
 /// The vertex of each grain within `reach` of vertex v that is nearest to it, sorted by grain.
@@ -207,7 +207,7 @@ void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineSta
       if (surely_outside(state.position[start], state.position[end], x, margin)) continue;
       const double gap = curve_contact(state.position, ring, v, start).gap;
       if (gap >= margin) continue;
-      OutlineContact contact = half_way_contact(half_way_, ring, v, candidate->nearest);
+      OutlineContact contact = facing_contact(on_the_way_, ring, v, candidate->nearest);
       contact.gap = gap;
       contact.slip = dot(perpendicular(contact.normal), relative_displacement(contact, state));
       part.contacts.push_back(contact);
@@ -219,10 +219,10 @@ std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, 
                                                       double margin) {
   assert(margin <= largest_margin);
   if (moved_far(state)) find_candidates(grains, state);
-  half_way_.resize(state.position.size());
+  on_the_way_.resize(state.position.size());
   parallel_for(static_cast<int>(parts_.size()), [&](int k) {
     for (int v = parts_[k].begin; v < parts_[k].end; ++v)
-      half_way_[v] = state.start[v] + state.normals_at * (state.position[v] - state.start[v]);
+      on_the_way_[v] = state.start[v] + state.normals_at * (state.position[v] - state.start[v]);
   });
   parallel_for(static_cast<int>(parts_.size()),
                [&](int k) { find_contacts(grains, state, margin * segment_, parts_[k]); });

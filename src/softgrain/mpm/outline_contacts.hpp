@@ -17,10 +17,10 @@ std::array<double, 4> curve_weights(double xi);
 /// of a pair bring their vertices, so that neither outline sinks between the vertices of the other. To a wall
 /// a vertex brings its arc (OutlineArc): it faces the wall with the place of the arc that lies lowest.
 ///
-/// Gaps are those at the end of the step; the place on a master and its normal are those half-way through it,
-/// (x_start + x)/2: along a convex outline n . dx then is the change of the gap but for terms of third order,
-/// so that contact gives no energy. With the normal of the end it is more, by half the curvature times the
-/// square of the slip (docs/decisions/0026).
+/// Gaps are those at the end of the step; the place on a master and its normal are those at
+/// OutlineState::normals_at, half-way unless said otherwise: along a convex outline n . dx then is the change
+/// of the gap but for terms of third order, so that contact gives no energy. With the normal of the end it is
+/// more, by half the curvature times the square of the slip (docs/decisions/0026).
 struct OutlineContact {
   int vertex = 0;  ///< the slave
   int wall = -1;   ///< or -1
@@ -28,7 +28,7 @@ struct OutlineContact {
       master{};      ///< vertices x_0 .. x_3 of the curve that it faces; at a wall its own, x_1 the slave
   double share = 0;  ///< xi: the slave faces c(xi); at a wall x_1 + xi (x_2 - x_0)/2 faces the wall
   double rise = 0;   ///< of the arc over that place, away from the wall [m]
-  Vec<2> normal{};   ///< unit, from the master to the slave: the gradient of the gap, half-way
+  Vec<2> normal{};   ///< unit, from the master to the slave: the gradient of the gap, at normals_at
   double gap = 0;    ///< g = (x_slave - c) . n [m], open > 0
   double slip = 0;   ///< tangential displacement of slave against master since the start of the step [m]
 
@@ -85,10 +85,10 @@ class OutlineNeighbours {
   void find_candidates(const SoftGrains& grains, const OutlineState& state);
   void find_contacts(const SoftGrains& grains, const OutlineState& state, double margin, Part& part) const;
 
-  std::vector<Part> parts_;        // all vertices, in order
-  std::vector<Vec<2>> reference_;  // positions when the candidates were found
-  std::vector<Vec<2>> half_way_;   // (x_start + x)/2 [m]
-  double segment_ = 0;             // mean length of a segment of the round grains [m]
+  std::vector<Part> parts_;         // all vertices, in order
+  std::vector<Vec<2>> reference_;   // positions when the candidates were found
+  std::vector<Vec<2>> on_the_way_;  // where normals are taken [m]
+  double segment_ = 0;              // mean length of a segment of the round grains [m]
 };
 
 /// Gap of a contact when its bodies have moved a little since it was found [m].

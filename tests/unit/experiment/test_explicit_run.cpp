@@ -5,8 +5,11 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/create.hpp"
+#include "support/simulations.hpp"
 
 using namespace softgrain;
+using test::advance;
+using test::value_of;
 
 namespace {
 
@@ -17,16 +20,6 @@ Case squeezed_grain(int cells, double speed) {
   c.mpm.integrator = "explicit";
   c.loading = {.wall_velocity = speed, .max_strain = 1.5};
   return c;
-}
-
-double value_of(const std::vector<Quantity>& row, std::string_view name) {
-  const auto found = std::ranges::find(row, name, &Quantity::name);
-  REQUIRE(found != row.end());
-  return found->value;
-}
-
-void advance(Simulation& simulation, std::int64_t steps) {
-  while (steps-- > 0 && !simulation.finished()) simulation.step();
 }
 
 }  // namespace

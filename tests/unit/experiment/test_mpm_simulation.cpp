@@ -7,8 +7,11 @@
 #include <numbers>
 
 #include "softgrain/core/error.hpp"
+#include "support/simulations.hpp"
 
 using namespace softgrain;
+using test::advance;
+using test::value_of;
 
 namespace {
 
@@ -31,16 +34,6 @@ Case one_grain() {
   c.mpm.cells = 4;
   c.loading = {.wall_velocity = 0.2, .max_strain = 0.1, .unload_at = {0.05}, .unload_by = 0.01};
   return c;
-}
-
-double value_of(const std::vector<Quantity>& row, std::string_view name) {
-  const auto found = std::ranges::find(row, name, &Quantity::name);
-  REQUIRE(found != row.end());
-  return found->value;
-}
-
-void advance(Simulation& simulation, std::int64_t steps) {
-  while (steps-- > 0 && !simulation.finished()) simulation.step();
 }
 
 }  // namespace

@@ -7,8 +7,11 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/create.hpp"
+#include "support/simulations.hpp"
 
 using namespace softgrain;
+using test::advance;
+using test::value_of;
 
 namespace {
 
@@ -23,16 +26,6 @@ Case one_grain() {
   c.loading.unload_at = {0.05};
   c.loading.unload_by = 0.01;
   return c;
-}
-
-double value_of(const std::vector<Quantity>& row, std::string_view name) {
-  const auto found = std::ranges::find(row, name, &Quantity::name);
-  REQUIRE(found != row.end());
-  return found->value;
-}
-
-void advance(Simulation& simulation, std::int64_t steps) {
-  while (steps-- > 0 && !simulation.finished()) simulation.step();
 }
 
 }  // namespace
