@@ -21,7 +21,7 @@ namespace softgrain {
 
 std::vector<std::string> notes_of(const CaseReading& reading) {
   std::vector<std::string> notes = notes_on_effect(reading.the_case, reading.without_effect);
-  if (reading.the_case.experiment.model != "mpm") return notes;
+  if (reading.the_case.experiment.model != GrainModel::mpm) return notes;
   const std::string_view caution = law_choice(reading.the_case.mpm.law).caution;
   if (!caution.empty()) notes.push_back(fmt::format("note: mpm.law: {}", caution));
   return notes;
@@ -59,7 +59,7 @@ void print_json(const CaseReading& reading, const Estimate& estimate, const Advi
 }
 
 void print_estimate(const Case& the_case, const Estimate& estimate) {
-  const bool bpm = the_case.experiment.model == "bpm";
+  const bool bpm = the_case.experiment.model == GrainModel::bpm;
   const auto count = [](double number) { return grouped(std::llround(number)); };
   fmt::print(stderr,
              "{} {}, about {} contacts\n"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/experiment/words.hpp"
 #include "softgrain/io/case_file.hpp"
 #include "softgrain/io/file.hpp"
 #include "softgrain/io/hdf5_file.hpp"
@@ -45,13 +46,13 @@ Json json_of(const std::vector<Quantity>& row) {
 /// "diametral of bpm, 1750 primaries, friction 0, seed 1", "compaction of mpm, 20 grains of 3584 points,
 /// ...".
 std::string summary(const Case& c) {
-  const std::string grain = c.experiment.model == "mpm"
+  const std::string grain = c.experiment.model == GrainModel::mpm
                                 ? fmt::format("{} points", 14 * c.mpm.cells * c.mpm.cells)
                                 : fmt::format("{} primaries", c.bpm.primaries);
   const std::string grains =
-      c.experiment.loading == "diametral" ? "" : fmt::format("{} grains of ", c.sample.grains);
-  return fmt::format("{} of {}, {}{}, friction {}, seed {}", c.experiment.loading, c.experiment.model, grains,
-                     grain, c.contact.friction, c.sample.seed);
+      c.experiment.loading == LoadingPath::diametral ? "" : fmt::format("{} grains of ", c.sample.grains);
+  return fmt::format("{} of {}, {}{}, friction {}, seed {}", word_of(c.experiment.loading),
+                     word_of(c.experiment.model), grains, grain, c.contact.friction, c.sample.seed);
 }
 
 /// "strain 0.1  wall_height 9 mm ...", a few to a line.

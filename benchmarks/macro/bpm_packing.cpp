@@ -19,7 +19,7 @@ constexpr int steps_before = 200, steps_timed = 40, calls = 20, sweeps = 20;
 
 Case paper_packing() {
   Case c;
-  c.experiment.loading = "compaction";
+  c.experiment.loading = LoadingPath::compaction;
   c.bpm.cohesive_pressure = 0.5e6;
   c.bpm.primaries = 200;
   c.loading.wall_velocity = 5;

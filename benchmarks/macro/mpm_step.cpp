@@ -28,7 +28,7 @@ struct Packing {
   std::vector<Wall<2>> walls;
   double area = 0, side = 0;
 
-  Packing(int count, int cells) : grains({}, make_law("neo_hookean", 10e6, 0.45), 990) {
+  Packing(int count, int cells) : grains({}, make_law(MaterialLaw::neo_hookean, 10e6, 0.45), 990) {
     const BoxSample sample = sample_box({.grains = count});
     const auto shape = std::make_shared<const Topology>(disk_grid(cells));
     std::vector<GrainPlacement> placed;

@@ -49,7 +49,7 @@ ImplicitDynamics loose_box(ReferenceGrid grid) {
                              {{0, sample.height}, {0, -1}, {0, -speed}},
                              {{0, 0}, {1, 0}, {}},
                              {{sample.width, 0}, {-1, 0}, {}}};
-  return {SoftGrains(std::move(placed), make_law("neo_hookean", 10e6, 0.45), 990),
+  return {SoftGrains(std::move(placed), make_law(MaterialLaw::neo_hookean, 10e6, 0.45), 990),
           std::move(walls),
           {.friction = mu, .wall_friction = mu}};
 }

@@ -32,7 +32,7 @@ constexpr int implicit_steps = 32;
 /// 32 implicit steps; and the same method in the other code.
 constexpr double explicit_error = 0.02, implicit_error = 0.1, code_error = 1e-4;
 
-const AnyLaw law = make_law("neo_hookean", VibratingBlocks::E, VibratingBlocks::nu);
+const AnyLaw law = make_law(MaterialLaw::neo_hookean, VibratingBlocks::E, VibratingBlocks::nu);
 
 /// The grid of a block, in units of its side; nodes of the outline last, counter-clockwise.
 ReferenceGrid block_grid(int n) {

@@ -105,7 +105,7 @@ TEST_CASE("a NaN ends the step in which it comes up, and the grain or particle i
 
   const auto shape = disk(2);
   const SoftGrains grains({placed(shape, 1e-3, {0, 0}), placed(shape, 1e-3, {2.1e-3, 0})},
-                          make_law("corotated", 1e6, 0.3), 1000);
+                          make_law(MaterialLaw::corotated, 1e6, 0.3), 1000);
   ImplicitDynamics implicit(grains, {floor_at(-1e-3)}, {});
   implicit.grains.batches[0].velocity[0][0].set(1, not_a_number);
   const std::string message = error_of([&] { implicit.step(1e-6); });
@@ -114,14 +114,15 @@ TEST_CASE("a NaN ends the step in which it comes up, and the grain or particle i
   CHECK(message.find("in grain 1") != std::string::npos);
 
   UpdatedLagrangianDynamics lagrangian({disk_of_points(1e-3, {}, 2e-4, 24)}, {floor_at(-1e-3)},
-                                       make_law("neo_hookean", 1e6, 0.3), 1000, {.cell = 2e-4});
+                                       make_law(MaterialLaw::neo_hookean, 1e6, 0.3), 1000, {.cell = 2e-4});
   lagrangian.grains[0].velocity[3] = {not_a_number, 0};
   CHECK(error_of([&] { lagrangian.step(1e-6); }) ==
         "a velocity of grain 0 is not finite; use a smaller time step");
 }
 
 TEST_CASE("a step that fails is divided, given up far below the explicit one, and taken back as it was") {
-  const SoftGrains grains({placed(disk(2), 1e-3, {0, 0})}, make_law("neo_hookean", 1e6, 0.3), 1000);
+  const SoftGrains grains({placed(disk(2), 1e-3, {0, 0})}, make_law(MaterialLaw::neo_hookean, 1e6, 0.3),
+                          1000);
   ImplicitDynamics dynamics(
       grains, {floor_at(-0.5e-3), {.point = {0, -0.6e-3}, .normal = {0, -1}, .velocity = {0, 1}}}, {});
   std::vector<Vec<2>> before, after;

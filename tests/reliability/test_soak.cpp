@@ -18,9 +18,9 @@ using namespace softgrain;
 namespace {
 
 /// Four grains with friction, loaded, and then unloaded and loaded again by 1 % of strain over and over.
-Case cyclic_case(const std::string& model) {
+Case cyclic_case(GrainModel model) {
   Case c;
-  c.experiment = {.loading = "compaction", .model = model};
+  c.experiment = {.loading = LoadingPath::compaction, .model = model};
   c.sample = {.seed = 3, .grains = 4, .packing_fraction = 0.65};
   c.bpm.primaries = 20;
   c.bpm.library = 1;
@@ -30,7 +30,7 @@ Case cyclic_case(const std::string& model) {
   c.contact.friction = 0.3;
   c.contact.wall_friction = 0.2;
   c.time.step = 0.5e-6;
-  c.loading.wall_velocity = model == "bpm" ? 1 : 0.5;
+  c.loading.wall_velocity = model == GrainModel::bpm ? 1 : 0.5;
   c.loading.unload_by = 0.01;
   for (int turn = 0; turn < 100000; ++turn) c.loading.unload_at.push_back(0.25 + 1e-12 * turn);
   c.loading.max_strain = 0.26;
@@ -146,10 +146,10 @@ void soak(const Case& c, int steps, double energy_tolerance) {
 
 TEST_CASE(
     "through endless cycles nothing grows, momentum and energy close, and the sample stays: bonded grains") {
-  soak<BpmCompaction>(cyclic_case("bpm"), test::repeats(10000, 1000000), 1e-5);
+  soak<BpmCompaction>(cyclic_case(GrainModel::bpm), test::repeats(10000, 1000000), 1e-5);
 }
 
 TEST_CASE(
     "through endless cycles nothing grows, momentum and energy close, and the sample stays: elastic grains") {
-  soak<MpmSimulation<ImplicitDynamics>>(cyclic_case("mpm"), test::repeats(600, 1000000), 1e-3);
+  soak<MpmSimulation<ImplicitDynamics>>(cyclic_case(GrainModel::mpm), test::repeats(600, 1000000), 1e-3);
 }

@@ -15,9 +15,9 @@ struct Energy {
 };
 
 /// Two bonded grains that touch nothing; `rise`: the most that kinetic + attraction energy came up again.
-Energy energy_of_free_grains(const std::string& activation, double e, double push_out, double mu) {
+Energy energy_of_free_grains(Activation activation, double e, double push_out, double mu) {
   Case c;
-  c.experiment = {.loading = "compaction", .model = "bpm"};
+  c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::bpm};
   c.bpm.primaries = 19;
   c.bpm.inner_friction = mu;
   c.contact = {.friction = mu, .restitution = e, .activation = activation, .push_out = push_out};
@@ -48,7 +48,7 @@ TEST_CASE(
   struct Law {
     double e, push_out, mu;
   };
-  for (const std::string activation : {"closed_at_mid_step", "closed_at_end_of_step"})
+  for (const Activation activation : {Activation::closed_at_mid_step, Activation::closed_at_end_of_step})
     for (const auto& [e, push_out, mu] :
          {Law{0, 0.1, 0}, Law{0.5, 0.1, 0.3}, Law{0.9, 0.1, 0}, Law{0.95, 0.1, 0}, Law{0.99, 0.1, 0},
           Law{0.99, 1, 0.3}, Law{1, 0.1, 0}, Law{1, 1, 0.3}}) {
@@ -60,5 +60,5 @@ TEST_CASE(
       CHECK(energy.rise < 1e-3 * std::abs(energy.start));  // the tolerance of the solver; 0.2 to 2.7 before
     }
   for (const double push_out : {0.1, 1.0})
-    CHECK(energy_of_free_grains("anticipated", 0, push_out, 0.3).rise < 1e-5);
+    CHECK(energy_of_free_grains(Activation::anticipated, 0, push_out, 0.3).rise < 1e-5);
 }

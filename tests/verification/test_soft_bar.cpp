@@ -50,8 +50,9 @@ struct Impact {
 /// Throws the bar at a wall; `courant` is the time step over the time that a wave needs across a cell.
 template <class Dynamics, class Options>
 Impact throw_bar(int cells, double courant, const Options& options) {
-  Dynamics dynamics({{test::placed(bar(cells), L, {0, 0}, {-speed, 0})}, make_law("neo_hookean", E, 0), rho},
-                    {{.point = {0, 0}, .normal = {1, 0}, .velocity = {}}}, options);
+  Dynamics dynamics(
+      {{test::placed(bar(cells), L, {0, 0}, {-speed, 0})}, make_law(MaterialLaw::neo_hookean, E, 0), rho},
+      {{.point = {0, 0}, .normal = {1, 0}, .velocity = {}}}, options);
   const double dt = courant * contact_time / (2 * cells), start = dynamics.grains.kinetic_energy();
   Impact impact;
   for (int k = 1; k * dt < 1.3 * contact_time; ++k)

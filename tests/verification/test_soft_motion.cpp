@@ -23,7 +23,7 @@ SoftGrains two_disks(int cells = 8, double v = 0.1) {
   const auto shape = test::disk(cells);
   return {{test::placed(shape, R, {0.5 - 0.15, 0.5 - 0.15}, {v, v}),
            test::placed(shape, R, {0.5 + 0.15, 0.5 + 0.15}, {-v, -v})},
-          make_law("neo_hookean", 1000, 0.3),
+          make_law(MaterialLaw::neo_hookean, 1000, 0.3),
           1000};
 }
 
@@ -77,7 +77,9 @@ void show(const std::string& integrator, int cells, double v, double dt, const C
 double slide(double slope, double mu) {
   constexpr double g = 9.81, side = 0.01;
   ImplicitDynamics dynamics(
-      {{test::placed(test::square(3), side, {0, side / 2})}, make_law("neo_hookean", 1e6, 0.3), 1000},
+      {{test::placed(test::square(3), side, {0, side / 2})},
+       make_law(MaterialLaw::neo_hookean, 1e6, 0.3),
+       1000},
       {test::floor_at(0)},
       {.tolerance = 1e-6, .wall_friction = mu, .gravity = {g * std::sin(slope), -g * std::cos(slope)}});
   for (int k = 0; k < 100; ++k) dynamics.step(1e-3);
@@ -143,7 +145,7 @@ TEST_CASE("a column of three soft blocks carries its weight at the bottom, and t
     placed.push_back(test::placed(shape, a, {0, height + a / 2}));
     height += a;
   }
-  ImplicitDynamics dynamics({placed, make_law("neo_hookean", 1e5, 0.3), rho}, {test::floor_at(0)},
+  ImplicitDynamics dynamics({placed, make_law(MaterialLaw::neo_hookean, 1e5, 0.3), rho}, {test::floor_at(0)},
                             {.tolerance = 1e-6, .friction = 0.5, .wall_friction = 0.5, .gravity = {0, -g}});
   for (int k = 0; k < 100; ++k) dynamics.step(dt);
   const auto weight_from = [&](int first) {
@@ -168,7 +170,7 @@ TEST_CASE("a column of three soft blocks carries its weight at the bottom, and t
 }
 
 TEST_CASE("a stressed grain that is carried across ten cells keeps its stress: it has its own grid") {
-  SoftGrains grains({test::placed(test::disk(8), 1, {0, 0})}, make_law("neo_hookean", 1, 0.45), 1);
+  SoftGrains grains({test::placed(test::disk(8), 1, {0, 0})}, make_law(MaterialLaw::neo_hookean, 1, 0.45), 1);
   test::move_nodes(grains, [](int, const Vec<2>& x) {
     return Vec<2>{1.2 * x[0] + 0.1 * x[1] * x[1], 0.8 * x[1]};
   });
@@ -190,8 +192,8 @@ TEST_CASE("a stressed grain that is carried across ten cells keeps its stress: i
 
 TEST_CASE("a free grain keeps its spin and the energy of it, in implicit steps too") {
   constexpr double R = 1e-3, omega = 300, dt = 1e-4;  // 0.03 rad a step: backward Euler loses 1e-3 of it
-  SoftGrains grains({test::placed(test::disk(4), R, {0, 0}, {1, 0})}, make_law("neo_hookean", 1e7, 0.3),
-                    1000);
+  SoftGrains grains({test::placed(test::disk(4), R, {0, 0}, {1, 0})},
+                    make_law(MaterialLaw::neo_hookean, 1e7, 0.3), 1000);
   for (GrainBatch& batch : grains.batches)
     for (std::size_t i = 0; i < batch.position.size(); ++i) {
       const Vec<2, Wide> x = batch.position[i];

@@ -75,7 +75,7 @@ Compaction compact(const Options& options, double dt, double last, double mark) 
     area += 3.141592653589793 * grain.radius * grain.radius;
     mean_radius += grain.radius / 20;
   }
-  SoftGrains grains(std::move(placed), make_law("neo_hookean", 1e7, 0.45), 990);
+  SoftGrains grains(std::move(placed), make_law(MaterialLaw::neo_hookean, 1e7, 0.45), 990);
   Dynamics dynamics(std::move(grains), test::box_walls(sample.width, speed), options);
   Compaction result;
   std::vector<Vec<2>> x;
@@ -136,7 +136,7 @@ TEST_CASE("a box of grains is compacted at 1 mm/s with every step converged, at 
   std::vector<GrainPlacement> placed;
   for (const PlacedGrain& grain : sample.grains)
     placed.push_back(test::placed(test::disk(4), grain.radius, grain.centre, {}, grain.angle));
-  SoftGrains grains(std::move(placed), make_law("neo_hookean", 1e7, 0.45), 990);
+  SoftGrains grains(std::move(placed), make_law(MaterialLaw::neo_hookean, 1e7, 0.45), 990);
   ImplicitDynamics dynamics(std::move(grains), test::box_walls(sample.width, 1e-3), {});
   const double dt = 0.01 * 0.7e-3 / 1e-3;
   int steps = 0;

@@ -15,7 +15,7 @@ namespace {
 constexpr double R = 5e-3, E = 1e7;
 
 struct Squeeze {
-  const char* law = "neo_hookean";
+  MaterialLaw law = MaterialLaw::neo_hookean;
   double nu = 0.45;
   int cells = 16;
   double speed = 0.2, step = 5e-5;  ///< of the top plate [m/s], of time [s]
@@ -75,8 +75,8 @@ TEST_CASE("a neo-Hookean grain between plates follows the converged finite eleme
 
 TEST_CASE("small-strain Hooke softens where Hencky stiffens") {
   const std::vector<double> approach{0.1, 0.2, 0.3};
-  check_forces({.law = "small_strain_hooke"}, approach, {.0753, .1882, .3319}, 0.03);
-  check_forces({.law = "hencky"}, approach, {.0797, .2208, .4454}, 0.03);
+  check_forces({.law = MaterialLaw::small_strain_hooke}, approach, {.0753, .1882, .3319}, 0.03);
+  check_forces({.law = MaterialLaw::hencky}, approach, {.0797, .2208, .4454}, 0.03);
 }
 
 TEST_CASE("a Hookean grain widens as a disk between two forces: dL = F/E* (4/pi - 1 + nu/(1 - nu))") {
@@ -88,7 +88,8 @@ TEST_CASE("a Hookean grain widens as a disk between two forces: dL = F/E* (4/pi 
     const auto [low, high] = std::ranges::minmax(x, {}, [axis](const Vec<2>& v) { return v[axis]; });
     return high[axis] - low[axis];
   };
-  const SoftGrains grains({test::placed(shape, R, {0, 0})}, make_law("small_strain_hooke", E, nu), 990);
+  const SoftGrains grains({test::placed(shape, R, {0, 0})}, make_law(MaterialLaw::small_strain_hooke, E, nu),
+                          990);
   const double width = extent(grains, 0), reach = extent(grains, 1) / 2;
   ImplicitDynamics dynamics(
       grains, {test::floor_at(-reach), {.point = {0, reach}, .normal = {0, -1}, .velocity = {0, -speed}}},
@@ -120,7 +121,7 @@ TEST_CASE("the force on a grain does not depend on the speed of the plates, from
     double reach = 0;
     for (const Vec<2>& X : shape->grid.outline()) reach = std::max(reach, X[1] * R);
     ImplicitDynamics dynamics(
-        {{test::placed(shape, R, {0, 0})}, make_law("neo_hookean", E, 0.45), 990},
+        {{test::placed(shape, R, {0, 0})}, make_law(MaterialLaw::neo_hookean, E, 0.45), 990},
         {test::floor_at(-reach), {.point = {0, reach}, .normal = {0, -1}, .velocity = {0, -speed}}},
         {.wall_friction = friction});
     const double dt = 0.01 * R / speed;

@@ -44,7 +44,7 @@ SoftGrains grain_above_floor(int cells, double gap, double speed, double angle) 
   const double reach =
       norm(shape->grid.node[shape->grid.outline_begin]);  // of the circle through the vertices
   return {{test::placed(shape, R, {0, (reach + gap) * R}, {0, -speed}, angle)},
-          make_law("neo_hookean", E, nu),
+          make_law(MaterialLaw::neo_hookean, E, nu),
           density};
 }
 
@@ -103,7 +103,7 @@ TEST_CASE("without friction contact gives no energy to a packing") {
   std::vector<GrainPlacement> placed;
   for (const PlacedGrain& grain : sample.grains)
     placed.push_back(test::placed(test::disk(6), grain.radius, grain.centre, {}, grain.angle));
-  ImplicitDynamics dynamics({std::move(placed), make_law("neo_hookean", E, nu), density},
+  ImplicitDynamics dynamics({std::move(placed), make_law(MaterialLaw::neo_hookean, E, nu), density},
                             test::box_walls(sample.width, speed), {});
   double least = 0;
   while (dynamics.walls[1].point[1] > sample.width * std::exp(-strain)) {

@@ -32,7 +32,8 @@ UpdatedLagrangianDynamics vibrating(ShapeFunction shape, const Vec<2>& velocity)
   PointGrain grain = disk_of_points(1, {}, cell, 64);
   for (int p = 0; p < grain.points(); ++p)
     grain.velocity[p] = velocity + 0.1 * Vec<2>{grain.position[p][0], -grain.position[p][1]};
-  return {{std::move(grain)}, {}, make_law("neo_hookean", 1, 0.45), 1, {.shape = shape, .cell = cell}};
+  return {
+      {std::move(grain)}, {}, make_law(MaterialLaw::neo_hookean, 1, 0.45), 1, {.shape = shape, .cell = cell}};
 }
 
 /// rms difference of the stress of a grain that flies ten cells while it vibrates, from the stress of one
@@ -69,7 +70,7 @@ std::vector<double> force_at(const Choice& choice, double cell, double speed,
   UpdatedLagrangianDynamics dynamics({grain},
                                      {{.point = {0, -reach}, .normal = {0, 1}, .velocity = {}},
                                       {.point = {0, reach}, .normal = {0, -1}, .velocity = {0, -speed}}},
-                                     make_law("neo_hookean", E, nu), rho,
+                                     make_law(MaterialLaw::neo_hookean, E, nu), rho,
                                      {.shape = choice.shape, .contact_on = choice.contact_on, .cell = cell});
   const double dt = stable_time_step(dynamics.law, rho, cell);
   std::vector<double> force;
@@ -95,7 +96,7 @@ double first_force(const Choice& choice, double offset, double wall_reach = -1) 
   const double top = offset * cell + R, dt = 1e-9, speed = 0.01 * cell / dt;
   UpdatedLagrangianDynamics dynamics(
       {grain}, {{.point = {0, top + 3 * cell}, .normal = {0, -1}, .velocity = {0, -speed}}},
-      make_law("neo_hookean", E, nu), rho,
+      make_law(MaterialLaw::neo_hookean, E, nu), rho,
       {.shape = choice.shape, .contact_on = choice.contact_on, .cell = cell, .wall_reach = wall_reach});
   while (dynamics.step(dt).contacts == 0)
     if (dynamics.walls[0].point[1] < top) break;

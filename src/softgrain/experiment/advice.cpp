@@ -9,7 +9,7 @@
 namespace softgrain {
 namespace {
 
-bool is_diametral(const Case& c) { return c.experiment.loading == "diametral"; }
+bool is_diametral(const Case& c) { return c.experiment.loading == LoadingPath::diametral; }
 
 /// <a0> of one grain [m]: primaries of equal size that fill pi R^2 at a packing fraction of 0.84.
 double mean_distance(const Case& c) { return 2 * c.grain.radius * std::sqrt(0.84 / c.bpm.primaries); }
@@ -17,7 +17,7 @@ double mean_distance(const Case& c) { return 2 * c.grain.radius * std::sqrt(0.84
 double stress_of(const Case& c) {
   if (!is_diametral(c) && c.loading.hold_stress > 0) return c.loading.hold_stress;
   if (!is_diametral(c) && c.loading.max_stress > 0) return c.loading.max_stress;
-  if (c.experiment.model == "mpm") return c.mpm.young_modulus;
+  if (c.experiment.model == GrainModel::mpm) return c.mpm.young_modulus;
   return is_diametral(c) ? c.bpm.attraction / mean_distance(c) : c.bpm.cohesive_pressure;
 }
 
@@ -33,7 +33,7 @@ double rate_times_diameter(const Case& c) {
 Advice advise(const Case& c) {
   Advice advice;
   advice.time_step = first_time_step(c);
-  advice.longest_step = c.experiment.model == "bpm" ? critical_bond_step(c) : longest_time_step(c);
+  advice.longest_step = c.experiment.model == GrainModel::bpm ? critical_bond_step(c) : longest_time_step(c);
   advice.stress = stress_of(c);
   advice.inertial_number = rate_times_diameter(c) * std::sqrt(c.grain.density / advice.stress);
   return advice;

@@ -10,11 +10,7 @@
 namespace softgrain {
 namespace {
 
-bool equal_size(const Case& c) {
-  require(c.bpm.equal == "count" || c.bpm.equal == "size", "bpm.equal must be 'count' or 'size', got '{}'",
-          c.bpm.equal);
-  return c.bpm.equal == "size";
-}
+bool equal_size(const Case& c) { return c.bpm.equal == EqualPrimaries::size; }
 
 /// Which aggregate a grain gets: the next one, or that whose number of primaries fits its radius.
 int choice_of(const Case& c, int grain, double radius) {

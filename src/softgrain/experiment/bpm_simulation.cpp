@@ -31,22 +31,6 @@ void refuse_overlaps(const StepReport& report) {
 /// The first step starts without a guess of the impulses and may take this many times the sweeps.
 constexpr int first_step_factor = 200;
 
-Activation activation_of(const std::string& name) {
-  if (name == "closed_at_mid_step") return Activation::closed_at_mid_step;
-  if (name == "closed_at_end_of_step") return Activation::closed_at_end_of_step;
-  require(name == "anticipated",
-          "contact.activation must be 'anticipated', 'closed_at_mid_step' or 'closed_at_end_of_step', got "
-          "'{}'",
-          name);
-  return Activation::anticipated;
-}
-
-Precision precision_of(const std::string& name) {
-  if (name == "single") return Precision::single;
-  require(name == "double", "solver.precision must be 'single' or 'double', got '{}'", name);
-  return Precision::full;
-}
-
 }  // namespace
 
 RigidStepOptions rigid_step_options(const Case& c) {
@@ -56,8 +40,8 @@ RigidStepOptions rigid_step_options(const Case& c) {
                      .relaxation = c.solver.relaxation},
           .law = {.restitution = c.contact.restitution,
                   .push_out = c.contact.push_out,
-                  .activation = activation_of(c.contact.activation)},
-          .precision = precision_of(c.solver.precision)};
+                  .activation = c.contact.activation},
+          .precision = c.solver.precision};
 }
 
 BpmSimulation::BpmSimulation(const Case& the_case, std::unique_ptr<PlatePath> path,

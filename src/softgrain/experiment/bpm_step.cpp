@@ -20,7 +20,7 @@ constexpr double paper_step = 0.25e-6;
 /// A wall moves at most this share of the radius of the smallest primary in a step.
 constexpr double wall_share = 0.01;
 
-bool between_plates(const Case& c) { return c.experiment.loading == "diametral"; }
+bool between_plates(const Case& c) { return c.experiment.loading == LoadingPath::diametral; }
 
 /// Radius and mass of the smallest primary of the smallest grain.
 struct SmallestPrimary {
@@ -72,7 +72,7 @@ Case with_bonded_time_step(Case c) {
 
 std::string bond_step_too_long(const Case& c) {
   const double critical = critical_bond_step(c);
-  if (c.experiment.model != "bpm" || !(c.time.step > critical)) return "";
+  if (c.experiment.model != GrainModel::bpm || !(c.time.step > critical)) return "";
   return fmt::format(
       "time.step {:.3g} s is longer than the critical step of the bonds, {:.3g} s; use a smaller time.step, "
       "or 0 for "

@@ -1,16 +1,36 @@
 #pragma once
 #include <cstdint>
-#include <string>
 #include <vector>
 
+#include "softgrain/material/material_law.hpp"
+#include "softgrain/math/precision.hpp"
+#include "softgrain/mpm/contact_on.hpp"
+#include "softgrain/mpm/shape_functions.hpp"
+#include "softgrain/rigid/activation.hpp"
+
 namespace softgrain {
+
+// The choices of a case. Their words in case files: experiment/words.hpp.
+
+enum class LoadingPath {
+  diametral,   ///< one grain between two plates, the top one moves
+  compaction,  ///< grains in a box whose lid comes down
+  isotropic,   ///< grains in a box whose four walls come in
+};
+enum class GrainModel { bpm, mpm };         ///< bonded rigid primaries, an elastic body
+enum class EqualPrimaries { count, size };  ///< what the grains of a packing share
+enum class Integrator {
+  backward_euler,    ///< implicit
+  symplectic_euler,  ///< explicit
+};
+enum class Formulation { total_lagrangian, updated_lagrangian };
 
 /// One experiment, complete: what a case file says, in SI units, with every default filled in. Per metre of
 /// depth.
 struct Case {
   struct Experiment {
-    std::string loading = "diametral";  ///< the loading path
-    std::string model = "bpm";          ///< how a grain is modelled
+    LoadingPath loading = LoadingPath::diametral;
+    GrainModel model = GrainModel::bpm;
   } experiment;
 
   struct Grain {
@@ -25,19 +45,19 @@ struct Case {
     double cohesive_pressure = 0.5e6;  ///< sigma_I = F0/<a0> of each grain of a packing [Pa]
     double exponent = 7;               ///< gamma [-]
     double inner_friction = 0;         ///< mu between the primaries of a grain of a packing
-    std::string equal = "count";       ///< what the grains of a packing share: "count" or "size" of primaries
-    int library = 6;                   ///< different aggregates of which a packing is made
+    EqualPrimaries equal = EqualPrimaries::count;
+    int library = 6;  ///< different aggregates of which a packing is made
   } bpm;
 
   struct Mpm {
-    std::string law = "neo_hookean";      ///< elastic law of the material
-    double young_modulus = 10e6;          ///< E [Pa]
-    double poisson_ratio = 0.45;          ///< nu [-]
-    int cells = 16;                       ///< along a side of the inner square: 14 cells^2 points in a grain
-    std::string integrator = "implicit";  ///< or "explicit"
-    std::string formulation = "total_lagrangian";  ///< or "updated_lagrangian", explicit, for comparison
-    std::string shape_functions = "gimp";          ///< updated_lagrangian: or "bilinear", "bspline"
-    std::string contact_on = "outline";            ///< updated_lagrangian: or "grid_nodes"
+    MaterialLaw law = MaterialLaw::neo_hookean;
+    double young_modulus = 10e6;  ///< E [Pa]
+    double poisson_ratio = 0.45;  ///< nu [-]
+    int cells = 16;               ///< along a side of the inner square: 14 cells^2 points in a grain
+    Integrator integrator = Integrator::backward_euler;
+    Formulation formulation = Formulation::total_lagrangian;  ///< or updated, explicit, for comparison
+    ShapeFunction shape_functions = ShapeFunction::gimp;      ///< of updated_lagrangian
+    ContactOn contact_on = ContactOn::outline;                ///< of updated_lagrangian
     double time_step = 0;  ///< dt [s]; 0: the plate moves 1 % of the smallest R (implicit), stable (explicit)
     double tolerance = 1e-4;  ///< largest last correction of Newton's method, over the mean grain radius
     double damping = 0;       ///< zeta [1/s] of f = -zeta m (v - v_walls)
@@ -47,17 +67,16 @@ struct Case {
     double friction = 0;       ///< mu between grains; of one bpm grain between plates: between its primaries
     double wall_friction = 0;  ///< mu against walls
     double restitution = 0;    ///< e_n, Newton's
-    std::string activation =
-        "anticipated";      ///< when a contact is active: or "closed_at_mid_step", "closed_at_end_of_step"
+    Activation activation = Activation::anticipated;
     double push_out = 0.1;  ///< beta: share of an existing overlap removed in a step
   } contact;
 
   struct Solver {
     int min_sweeps = 10;
     int max_sweeps = 50;
-    double tolerance = 1e-5;           ///< mean penetration gained in a step over the mean primary diameter
-    double relaxation = 1.4;           ///< omega
-    std::string precision = "single";  ///< of the sweeps: single or double
+    double tolerance = 1e-5;  ///< mean penetration gained in a step over the mean primary diameter
+    double relaxation = 1.4;  ///< omega
+    Precision precision = Precision::single;  ///< of the sweeps
   } solver;
 
   struct Loading {

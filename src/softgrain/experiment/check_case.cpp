@@ -29,13 +29,13 @@ Case twin_of(Case c) {
 
 void check_case(const Case& c) {
   check_time_step(c);
-  const bool bpm = c.experiment.model == "bpm";
+  const bool bpm = c.experiment.model == GrainModel::bpm;
   if (estimate(c).particles <= (bpm ? few_primaries : few_points)) {
     create_simulation(c);
     return;
   }
   create_simulation(twin_of(c));
-  if (c.experiment.loading != "diametral" && c.sample.grains <= few_grains) sample_box(c);
+  if (c.experiment.loading != LoadingPath::diametral && c.sample.grains <= few_grains) sample_box(c);
 }
 
 }  // namespace softgrain

@@ -26,7 +26,7 @@ struct MpmSetup {
 MpmSetup setup_of(const Case& c) {
   const auto shape = std::make_shared<const Topology>(disk_grid(c.mpm.cells));
   MpmSetup setup;
-  if (c.experiment.loading == "diametral") {
+  if (c.experiment.loading == LoadingPath::diametral) {
     setup.grains.push_back(
         {.topology = shape, .radius = c.grain.radius, .centre = {}, .angle = 0, .velocity = {}});
     double reach = 0;  // of the circle through the vertices, which plates meet
@@ -54,7 +54,7 @@ SoftGrains grains_of(const Case& c, std::vector<GrainPlacement> placed) {
 }
 
 WallDrive drive_of(const Case& c, double height, double dt) {
-  if (c.experiment.loading == "diametral")
+  if (c.experiment.loading == LoadingPath::diametral)
     return {c.loading, std::make_unique<DiametralPath>(c.loading, c.grain.radius, dt), dt};
   return {c.loading, box_path(c, height, dt), dt};
 }
@@ -89,10 +89,12 @@ double tolerance_of(const Case& c, const SoftGrains& grains, double height) {
 
 double longest_time_step(const Case& c) {
   constexpr double no_limit = std::numeric_limits<double>::infinity();
-  if (c.experiment.model != "mpm") return no_limit;
-  if (c.mpm.formulation == "updated_lagrangian") return UpdatedLagrangianSimulation::longest_time_step(c);
-  if (c.mpm.integrator != "explicit") return no_limit;
-  const double radius = c.experiment.loading == "diametral" ? c.grain.radius : c.sample.smallest_diameter / 2;
+  if (c.experiment.model != GrainModel::mpm) return no_limit;
+  if (c.mpm.formulation == Formulation::updated_lagrangian)
+    return UpdatedLagrangianSimulation::longest_time_step(c);
+  if (c.mpm.integrator != Integrator::symplectic_euler) return no_limit;
+  const double radius =
+      c.experiment.loading == LoadingPath::diametral ? c.grain.radius : c.sample.smallest_diameter / 2;
   const SoftGrains smallest =
       grains_of(c, {{.topology = std::make_shared<const Topology>(disk_grid(c.mpm.cells)),
                      .radius = radius,
@@ -103,7 +105,7 @@ double longest_time_step(const Case& c) {
 }
 
 void check_time_step(const Case& c) {
-  if (c.mpm.time_step == 0 || c.experiment.model != "mpm") return;
+  if (c.mpm.time_step == 0 || c.experiment.model != GrainModel::mpm) return;
   const double longest = longest_time_step(c);
   require(c.mpm.time_step <= longest,
           "mpm.time_step {:.4g} us is beyond the longest stable step of an explicit run of this case, "
@@ -113,13 +115,14 @@ void check_time_step(const Case& c) {
 
 std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
   check_time_step(c);
-  if (c.mpm.formulation == "updated_lagrangian") return std::make_unique<UpdatedLagrangianSimulation>(c);
+  if (c.mpm.formulation == Formulation::updated_lagrangian)
+    return std::make_unique<UpdatedLagrangianSimulation>(c);
   MpmSetup setup = setup_of(c);
   double smallest = setup.grains.front().radius;
   for (const GrainPlacement& grain : setup.grains) smallest = std::min(smallest, grain.radius);
   SoftGrains grains = grains_of(c, std::move(setup.grains));
   const double height = setup.walls[top_wall].point[1] - setup.walls[bottom_wall].point[1];
-  if (c.mpm.integrator == "implicit") {
+  if (c.mpm.integrator == Integrator::backward_euler) {
     // the lid goes down by 1 % of the smallest radius, at most, in a step
     const double dt = c.mpm.time_step > 0 ? c.mpm.time_step : 0.01 * smallest / c.loading.wall_velocity;
     ImplicitOptions options{.tolerance = tolerance_of(c, grains, height),
@@ -131,8 +134,6 @@ std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
     return std::make_unique<MpmSimulation<ImplicitDynamics>>(
         ImplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(drive), dt);
   }
-  require(c.mpm.integrator == "explicit", "mpm.integrator must be 'implicit' or 'explicit', got '{}'",
-          c.mpm.integrator);
   const double dt = c.mpm.time_step > 0 ? c.mpm.time_step : stable_time_step(grains);
   ExplicitOptions options{.damping_share = damping_share,
                           .friction = c.contact.friction,

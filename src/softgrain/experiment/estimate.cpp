@@ -10,9 +10,11 @@
 namespace softgrain {
 namespace {
 
-bool is_diametral(const Case& c) { return c.experiment.loading == "diametral"; }
-bool is_updated_lagrangian(const Case& c) { return c.mpm.formulation == "updated_lagrangian"; }
-bool is_implicit(const Case& c) { return c.mpm.integrator == "implicit" && !is_updated_lagrangian(c); }
+bool is_diametral(const Case& c) { return c.experiment.loading == LoadingPath::diametral; }
+bool is_updated_lagrangian(const Case& c) { return c.mpm.formulation == Formulation::updated_lagrangian; }
+bool is_implicit(const Case& c) {
+  return c.mpm.integrator == Integrator::backward_euler && !is_updated_lagrangian(c);
+}
 double grains(const Case& c) { return is_diametral(c) ? 1 : c.sample.grains; }
 double smallest_radius(const Case& c) {
   return is_diametral(c) ? c.grain.radius : c.sample.smallest_diameter / 2;
@@ -37,10 +39,10 @@ double travel(const Case& c) {
   const auto travel_to = [&](double strain) {
     return is_diametral(c) ? plate_travel(strain, c.grain.radius) : -height * std::expm1(-strain);
   };
-  const double last = is_diametral(c)
-                          ? c.loading.max_strain
-                          : CompactionPath::last_strain(c.loading, c.sample.packing_fraction,
-                                                        c.experiment.loading == "isotropic" ? 2 : 1);
+  const double last =
+      is_diametral(c) ? c.loading.max_strain
+                      : CompactionPath::last_strain(c.loading, c.sample.packing_fraction,
+                                                    c.experiment.loading == LoadingPath::isotropic ? 2 : 1);
   double path = travel_to(last);
   for (const double turn : c.loading.unload_at)
     if (turn < last) path += 2 * (travel_to(turn) - travel_to(turn - c.loading.unload_by));
@@ -54,7 +56,7 @@ double rest(const Case& c) {
 
 /// Primaries of all grains.
 double primaries(const Case& c) {
-  if (is_diametral(c) || c.bpm.equal == "count") return grains(c) * c.bpm.primaries;
+  if (is_diametral(c) || c.bpm.equal == EqualPrimaries::count) return grains(c) * c.bpm.primaries;
   // mean of (R / R_min)^2 over radii spread evenly
   const double ratio = c.sample.largest_diameter / c.sample.smallest_diameter;
   return grains(c) * c.bpm.primaries * (1 + ratio + ratio * ratio) / 3;
@@ -67,7 +69,7 @@ double box_height(const Case& c) {
 }
 
 double first_time_step(const Case& c) {
-  if (c.experiment.model == "bpm") return c.time.step > 0 ? c.time.step : stable_bond_step(c);
+  if (c.experiment.model == GrainModel::bpm) return c.time.step > 0 ? c.time.step : stable_bond_step(c);
   if (c.mpm.time_step > 0) return c.mpm.time_step;
   if (is_implicit(c)) return 0.01 * smallest_radius(c) / c.loading.wall_velocity;
   // a share of the time in which a pressure wave crosses a cell; pi R^2 = 3.5 cells^2 h^2
@@ -94,8 +96,8 @@ double seconds_of_step(const Case& c, const Estimate& e) {
   constexpr int usual_sweeps = 17;
   const int sweeps =
       std::clamp(usual_sweeps, c.solver.min_sweeps, std::max(c.solver.min_sweeps, c.solver.max_sweeps));
-  if (c.experiment.model == "bpm")
-    return e.contacts * sweeps * (c.solver.precision == "single" ? 4.1e-9 : 5.5e-9);
+  if (c.experiment.model == GrainModel::bpm)
+    return e.contacts * sweeps * (c.solver.precision == Precision::single ? 4.1e-9 : 5.5e-9);
   if (is_updated_lagrangian(c)) return e.particles * 1.1e-7;
   const double batches = std::ceil(grains(c) / 8);  // a batch of 8 grains costs the same when it is not full
   return batches * 8 * e.particles / grains(c) * (is_implicit(c) ? 1.3e-7 * quasi_static_factor(c) : 5.5e-9);
@@ -106,13 +108,13 @@ double seconds_of_step(const Case& c, const Estimate& e) {
 double seconds_of_rows(const Case& c, const Estimate& e) {
   if (is_diametral(c)) return 0;
   return std::min<double>(c.output.samples, e.steps) * grains(c) *
-         (c.experiment.model == "bpm" ? 75e-6 : 17e-6);
+         (c.experiment.model == GrainModel::bpm ? 75e-6 : 17e-6);
 }
 
 /// Snapshots and ParaView's files of a whole run [bytes], as measured by primary, by bonded grain (outlines)
 /// and by material point. A step writes one snapshot at most.
 double disk(const Case& c, const Estimate& e) {
-  const bool bpm = c.experiment.model == "bpm";
+  const bool bpm = c.experiment.model == GrainModel::bpm;
   const double frames =
       std::min<double>(c.output.snapshots, e.steps) + 1 + 2 * static_cast<double>(c.loading.unload_at.size());
   const double bytes_of_particle = (bpm ? 280 : 150) + (c.output.vtk ? 75 : 0);
@@ -123,7 +125,7 @@ double disk(const Case& c, const Estimate& e) {
 /// batch of 8 elastic grains takes the same when it is not full.
 double memory(const Case& c, const Estimate& e) {
   constexpr double program = 35e6;
-  if (c.experiment.model == "bpm") return program + 2300 * e.particles + 7000 * grains(c);
+  if (c.experiment.model == GrainModel::bpm) return program + 2300 * e.particles + 7000 * grains(c);
   const double in_batches = std::ceil(grains(c) / 8) * 8 * e.particles / grains(c);
   return program + 550 * e.particles + 350 * in_batches;
 }
@@ -133,14 +135,14 @@ double memory(const Case& c, const Estimate& e) {
 double least_energy(const Case& c) {
   constexpr double strain = 1e-3;
   const double v = c.loading.wall_velocity, kinetic = c.grain.density * v * v / 2;
-  const bool implicit = c.experiment.model == "mpm" && is_implicit(c);
+  const bool implicit = c.experiment.model == GrainModel::mpm && is_implicit(c);
   const double elastic = implicit ? wave_modulus(c) * strain * strain / 2 : 0;
   return grain_area(c) * std::max(kinetic, elastic);
 }
 
 Estimate estimate(const Case& the_case) {
   constexpr double second = 1.0 / 3600;  // [h]
-  const bool bpm = the_case.experiment.model == "bpm";
+  const bool bpm = the_case.experiment.model == GrainModel::bpm;
   const double cells = the_case.mpm.cells;
   Estimate result;
   result.particles = bpm ? primaries(the_case) : grains(the_case) * 14 * cells * cells;

@@ -23,7 +23,7 @@ class IsotropicPath final : public CompactionPath {
 
 /// The path of a case with a box of this height [m], by steps of dt [s].
 inline std::unique_ptr<PlatePath> box_path(const Case& c, double height, double dt) {
-  if (c.experiment.loading == "isotropic")
+  if (c.experiment.loading == LoadingPath::isotropic)
     return std::make_unique<IsotropicPath>(c.loading, height, dt, c.sample.packing_fraction, c.sample.aspect);
   return std::make_unique<CompactionPath>(c.loading, height, dt, c.sample.packing_fraction);
 }

@@ -10,33 +10,21 @@
 #include "softgrain/experiment/diametral_path.hpp"
 #include "softgrain/experiment/given_path.hpp"
 #include "softgrain/experiment/soft_view.hpp"
+#include "softgrain/experiment/words.hpp"
 #include "softgrain/geometry/polygon.hpp"
 #include "softgrain/math/tensor.hpp"
 
 namespace softgrain {
 namespace {
 
-ShapeFunction shape_of(const std::string& name) {
-  if (name == "bilinear") return ShapeFunction::bilinear;
-  if (name == "gimp") return ShapeFunction::gimp;
-  require(name == "bspline", "mpm.shape_functions must be 'bilinear', 'gimp' or 'bspline', got '{}'", name);
-  return ShapeFunction::bspline;
-}
-
-ContactOn contact_of(const std::string& name) {
-  if (name == "outline") return ContactOn::outline;
-  require(name == "grid_nodes", "mpm.contact_on must be 'outline' or 'grid_nodes', got '{}'", name);
-  return ContactOn::grid_nodes;
-}
-
 double cell_of(const Case& c) {
   return c.grain.radius * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;  // 14 cells^2 points, 4 to a cell
 }
 
 UpdatedLagrangianDynamics dynamics_of(const Case& c) {
-  require(c.experiment.loading == "diametral",
+  require(c.experiment.loading == LoadingPath::diametral,
           "mpm.formulation 'updated_lagrangian' needs experiment.loading 'diametral', got '{}'",
-          c.experiment.loading);
+          word_of(c.experiment.loading));
   const double R = c.grain.radius;
   const double cell = cell_of(c);
   PointGrain grain = disk_of_points(R, {}, cell, 8 * c.mpm.cells);
@@ -47,8 +35,8 @@ UpdatedLagrangianDynamics dynamics_of(const Case& c) {
            {.point = {0, reach}, .normal = {0, -1}, .velocity = {}}},
           make_law(c.mpm.law, c.mpm.young_modulus, c.mpm.poisson_ratio),
           c.grain.density,
-          {.shape = shape_of(c.mpm.shape_functions),
-           .contact_on = contact_of(c.mpm.contact_on),
+          {.shape = c.mpm.shape_functions,
+           .contact_on = c.mpm.contact_on,
            .cell = cell,
            .friction = c.contact.friction,
            .wall_friction = c.contact.wall_friction,

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "softgrain/io/case_relations.hpp"
 #include "softgrain/io/case_value.hpp"
 #include "softgrain/io/file.hpp"
 #include "softgrain/io/schema.hpp"

@@ -28,7 +28,7 @@ std::string si_unit_of(const Key& key) { return si_unit(parse_unit(key.unit).dim
 
 /// "a length, > 0"; words and switches need no range.
 std::string accepted(const Key& key) {
-  const std::string range = key.allowed.range.text();
+  const std::string range = key.range.text();
   return kind_in_words(key) + (range.empty() ? "" : ", " + range) +
          (range.empty() || key.unit.empty() ? "" : " " + si_unit_of(key));
 }
@@ -41,7 +41,7 @@ void add_bounds(Json& number, const Range& range) {
 /// A number in SI, or a text with a unit; which unit fits is checked by the program.
 Json number_schema(const Key& key) {
   Json number{{"type", "number"}};
-  add_bounds(number, key.allowed.range);
+  add_bounds(number, key.range);
   const Json quantity{{"type", "string"},
                       {"pattern", R"(^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[^\d\s].*$)"}};
   return {{"anyOf", Json::array({number, quantity})}};
@@ -49,17 +49,17 @@ Json number_schema(const Key& key) {
 
 Json value_schema(const Key& key) {
   if (std::holds_alternative<MemberOf<bool>>(key.member)) return {{"type", "boolean"}};
-  if (std::holds_alternative<MemberOf<std::string>>(key.member)) return {{"enum", key.allowed.words}};
+  if (const auto* enumerated = std::get_if<WordMember>(&key.member)) return {{"enum", enumerated->words()}};
   if (std::holds_alternative<MemberOf<double>>(key.member)) return number_schema(key);
   if (std::holds_alternative<MemberOf<std::vector<double>>>(key.member))
     return {{"type", "array"}, {"items", number_schema(key)}};
   Json whole{{"type", "integer"}};
-  add_bounds(whole, key.allowed.range);
+  add_bounds(whole, key.range);
   return whole;
 }
 
 /// One grain of the paper, unloaded at its two strains.
-Case diametral(const std::string& model) {
+Case diametral(GrainModel model) {
   Case c;
   c.experiment.model = model;
   c.loading.unload_at = {0.1, 0.3};
@@ -67,13 +67,13 @@ Case diametral(const std::string& model) {
 }
 
 /// Grains, speed and packing fraction of the paper's packings.
-Case compaction(const std::string& model) {
+Case compaction(GrainModel model) {
   Case c;
-  c.experiment = {.loading = "compaction", .model = model};
+  c.experiment = {.loading = LoadingPath::compaction, .model = model};
   c.sample.grains = 300;
   c.loading.wall_velocity = 5;
-  c.loading.max_strain = model == "mpm" ? 0.3 : 0.42;
-  if (model == "mpm") return c;
+  c.loading.max_strain = model == GrainModel::mpm ? 0.3 : 0.42;
+  if (model == GrainModel::mpm) return c;
   c.loading.max_stress = 5e6;  // ten times the cohesive pressure: close packed
   c.bpm.primaries = 200;
   c.time.step = 0.1e-6;
@@ -159,11 +159,12 @@ std::string case_reference_page() {
 
 const std::vector<CaseTemplate>& case_templates() {
   static const std::vector<CaseTemplate> templates{
-      {"diametral-bpm", "one grain of rigid primary particles between two plates", diametral("bpm")},
-      {"diametral-mpm", "one elastic grain between two plates", diametral("mpm")},
+      {"diametral-bpm", "one grain of rigid primary particles between two plates",
+       diametral(GrainModel::bpm)},
+      {"diametral-mpm", "one elastic grain between two plates", diametral(GrainModel::mpm)},
       {"compaction-bpm", "300 grains of 200 primary particles in a box whose lid comes down",
-       compaction("bpm")},
-      {"compaction-mpm", "300 elastic grains in a box whose lid comes down", compaction("mpm")},
+       compaction(GrainModel::bpm)},
+      {"compaction-mpm", "300 elastic grains in a box whose lid comes down", compaction(GrainModel::mpm)},
   };
   return templates;
 }

@@ -41,7 +41,7 @@ std::string shown(const TomlValue& value) {
 }
 
 void check_range(const Key& key, double number, const TomlValue& value) {
-  const Range& range = key.allowed.range;
+  const Range& range = key.range;
   if (range.contains(number)) return;
   throw UsageError(fmt::format("{} = {} is out of range: it must be {}{}; the default is {}", key.name,
                                shown(value),
@@ -80,15 +80,6 @@ Integer read_integer(const Key& key, const TomlValue& value) {
   return static_cast<Integer>(*i);
 }
 
-std::string read_word(const Key& key, const TomlValue& value) {
-  const auto* word = std::get_if<std::string>(&value.content);
-  if (word == nullptr) wrong_type(key, value);
-  for (const std::string& allowed : key.allowed.words)
-    if (*word == allowed) return *word;
-  throw UsageError(fmt::format("{} takes {}, got '{}'{}", key.name, kind_in_words(key), *word,
-                               did_you_mean(*word, key.allowed.words)));
-}
-
 struct Assign {
   Case& the_case;
   const Key& key;
@@ -104,7 +95,13 @@ struct Assign {
     member(the_case) = read_integer<std::int64_t>(key, value);
   }
   void operator()(MemberOf<double> member) const { member(the_case) = read_number(key, value); }
-  void operator()(MemberOf<std::string> member) const { member(the_case) = read_word(key, value); }
+  void operator()(const WordMember& member) const {
+    const auto* word = std::get_if<std::string>(&value.content);
+    if (word == nullptr) wrong_type(key, value);
+    if (!member.assign(the_case, *word))
+      throw UsageError(fmt::format("{} takes {}, got '{}'{}", key.name, kind_in_words(key), *word,
+                                   did_you_mean(*word, member.words())));
+  }
   void operator()(MemberOf<std::vector<double>> member) const {
     const auto* items = std::get_if<TomlValue::Array>(&value.content);
     if (items == nullptr) wrong_type(key, value);
@@ -142,7 +139,7 @@ std::string quantity_text(double number, std::string_view unit) {
 template <class WriteNumber>
 std::string text_of(const Case& the_case, const Key& key, const WriteNumber& write_number) {
   Case copy = the_case;
-  const auto write = [&](auto member) -> std::string {
+  const auto write = [&](const auto& member) -> std::string {
     const auto& value = member(copy);
     using T = std::decay_t<decltype(value)>;
     if constexpr (std::is_same_v<T, double>) {
@@ -151,7 +148,7 @@ std::string text_of(const Case& the_case, const Key& key, const WriteNumber& wri
       std::vector<std::string> items;
       for (const double item : value) items.push_back(write_number(item));
       return fmt::format("[{}]", fmt::join(items, ", "));
-    } else if constexpr (std::is_same_v<T, std::string>) {
+    } else if constexpr (std::is_same_v<T, std::string_view>) {
       return fmt::format("\"{}\"", value);
     } else {
       return fmt::format("{}", value);
@@ -168,9 +165,8 @@ void assign(Case& the_case, const Key& key, const TomlValue& value) {
 
 std::string kind_in_words(const Key& key) {
   if (std::holds_alternative<MemberOf<bool>>(key.member)) return "true or false";
-  if (std::holds_alternative<MemberOf<std::string>>(key.member))
-    return fmt::format("{}\"{}\"", key.allowed.words.size() > 1 ? "one of " : "",
-                       fmt::join(key.allowed.words, "\", \""));
+  if (const auto* enumerated = std::get_if<WordMember>(&key.member))
+    return fmt::format("one of \"{}\"", fmt::join(enumerated->words(), "\", \""));
   if (std::holds_alternative<MemberOf<double>>(key.member)) return in_words(parse_unit(key.unit).dimension);
   if (!std::holds_alternative<MemberOf<std::vector<double>>>(key.member)) return "a whole number";
   return key.unit.empty() ? "a list of plain numbers"

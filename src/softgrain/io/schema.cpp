@@ -2,44 +2,61 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "softgrain/bpm/aggregate.hpp"
-#include "softgrain/experiment/bpm_step.hpp"
-#include "softgrain/experiment/estimate.hpp"
-#include "softgrain/material/any_law.hpp"
+#include "softgrain/experiment/words.hpp"
 
 namespace softgrain {
 namespace {
 
 using namespace scope;
 
-Allowed anything() { return {}; }
-Allowed positive() { return {.range = {.low = 0, .without_low = true}}; }
-Allowed at_least(double low) { return {.range = {.low = low}}; }
-Allowed from_to(double low, double high) { return {.range = {.low = low, .high = high}}; }
-Allowed between(double low, double high) {
-  return {.range = {.low = low, .high = high, .without_low = true, .without_high = true}};
+Range anything() { return {}; }
+Range its_words() { return {}; }
+Range positive() { return {.low = 0, .without_low = true}; }
+Range at_least(double low) { return {.low = low}; }
+Range from_to(double low, double high) { return {.low = low, .high = high}; }
+Range between(double low, double high) {
+  return {.low = low, .high = high, .without_low = true, .without_high = true};
 }
-Allowed one_of(std::vector<std::string> words) { return {.words = std::move(words)}; }
 
-std::vector<std::string> law_names() {
-  std::vector<std::string> names;
-  for (const LawChoice& choice : law_choices()) names.emplace_back(choice.name);
-  return names;
+template <class Enum>
+WordMember words_in(std::string_view (*word)(const Case&), bool (*assign)(Case&, std::string_view)) {
+  return {[] {
+            std::vector<std::string> words;
+            for (const Word<Enum>& entry : words_of<Enum>()) words.emplace_back(entry.word);
+            return words;
+          },
+          word, assign};
+}
+
+/// What leads from a case to a value of it; to an enum through its words.
+template <class Place>
+Member member_of(Place place) {
+  using T = std::decay_t<decltype(place(std::declval<Case&>()))>;
+  if constexpr (std::is_enum_v<T>) {
+    return words_in<T>([](const Case& c) { return word_of(Place{}(c)); },
+                       [](Case& c, std::string_view word) {
+                         const std::optional<T> value = value_of<T>(word);
+                         if (value) Place{}(c) = *value;
+                         return value.has_value();
+                       });
+  } else {
+    return MemberOf<T>(place);
+  }
 }
 
 // clang-format off
 // A key's name and its place in Case from the same words. The last argument is its scope: none for everywhere.
-#define KEY(member, ...) Key{#member, +[](Case& c) -> auto& { return c.member; }, __VA_ARGS__}
+#define KEY(member, ...) Key{#member, member_of([](auto& c) -> auto& { return c.member; }), __VA_ARGS__}
 
 std::vector<Key> all_keys() {
   return {
-      KEY(experiment.loading, "", one_of({"diametral", "compaction", "isotropic"}),
+      KEY(experiment.loading, "", its_words(),
           "the loading path; diametral: one grain between two plates, the top one moves; compaction: grains in a box "
           "whose lid comes down; isotropic: the same, all four walls come in"),
-      KEY(experiment.model, "", one_of({"bpm", "mpm"}),
+      KEY(experiment.model, "", its_words(),
           "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other; mpm: an "
           "elastic body by the material point method"),
 
@@ -58,20 +75,20 @@ std::vector<Key> all_keys() {
           "exponent gamma of F0 (a0/r)^gamma, r the distance of the centres, a0 the sum of the radii", with_bpm),
 
       KEY(bpm.inner_friction, "", at_least(0), "coefficient of friction mu between the primaries of a grain (in a box)", bpm_in_a_box),
-      KEY(bpm.equal, "", one_of({"count", "size"}),
+      KEY(bpm.equal, "", its_words(),
           "what all grains share: the number of primaries, or, to about 5 %, their size (in a box)", bpm_in_a_box),
       KEY(bpm.library, "", from_to(1, 1000), "different aggregates of which the grains are copies (in a box)", bpm_in_a_box),
 
-      KEY(mpm.law, "", one_of(law_names()), "elastic law", with_mpm),
+      KEY(mpm.law, "", its_words(), "elastic law", with_mpm),
       KEY(mpm.young_modulus, "MPa", positive(), "Young's modulus E", with_mpm),
       KEY(mpm.poisson_ratio, "", between(-1, 0.5), "Poisson's ratio nu", with_mpm),
       KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points", with_mpm),
-      KEY(mpm.integrator, "", one_of({"implicit", "explicit"}), "backward Euler, or symplectic Euler with lumped masses", total_lagrangian),
-      KEY(mpm.formulation, "", one_of({"total_lagrangian", "updated_lagrangian"}),
+      KEY(mpm.integrator, "", its_words(), "backward Euler, or symplectic Euler with lumped masses", total_lagrangian),
+      KEY(mpm.formulation, "", its_words(),
           "total_lagrangian: on a grid that fits the grain; updated_lagrangian: points move through a lattice that is "
           "reset in each step, always explicit, for comparison (diametral)", with_mpm),
-      KEY(mpm.shape_functions, "", one_of({"bilinear", "gimp", "bspline"}), "of the lattice (updated_lagrangian)", updated_lagrangian),
-      KEY(mpm.contact_on, "", one_of({"outline", "grid_nodes"}),
+      KEY(mpm.shape_functions, "", its_words(), "of the lattice (updated_lagrangian)", updated_lagrangian),
+      KEY(mpm.contact_on, "", its_words(),
           "where contact acts; total_lagrangian: on the outline only", updated_lagrangian),
       KEY(mpm.time_step, "us", at_least(0),
           "time step; 0: the plate moves 1 % of the smallest radius (implicit), or a stable step (explicit, which "
@@ -85,7 +102,7 @@ std::vector<Key> all_keys() {
           "coefficient of friction mu between grains; diametral test of a bpm grain: between its primaries", with_pairs),
       KEY(contact.wall_friction, "", at_least(0), "coefficient of friction mu against walls"),
       KEY(contact.restitution, "", from_to(0, 1), "Newton's coefficient of restitution e_n", with_bpm),
-      KEY(contact.activation, "", one_of({"anticipated", "closed_at_mid_step", "closed_at_end_of_step"}),
+      KEY(contact.activation, "", its_words(),
           "when a contact is active: always, so that it may close within the step; or when it is closed at mid-step, or "
           "will be at the end of the step", with_bpm),
       KEY(contact.push_out, "", from_to(0, 1), "share beta of an existing overlap that is removed in a step", with_bpm),
@@ -95,7 +112,7 @@ std::vector<Key> all_keys() {
       KEY(solver.tolerance, "", positive(),
           "converged: mean penetration gained in a step over the mean primary diameter is below this", with_bpm),
       KEY(solver.relaxation, "", between(0, 2), "over-relaxation omega of a sweep; 1 is plain Gauss-Seidel", with_bpm),
-      KEY(solver.precision, "", one_of({"single", "double"}),
+      KEY(solver.precision, "", its_words(),
           "of impulses and velocities within the sweeps of a bpm step; double for tolerances below 1e-11", with_bpm),
 
       KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top plate; isotropic: of opposite walls towards each other, half by each"),
@@ -150,85 +167,6 @@ std::vector<TableOfKeys> all_tables() {
 // clang-format on
 #undef KEY
 
-std::string unloading_not_ascending(const Case& c) {
-  const auto& strains = c.loading.unload_at;
-  const auto turn = std::adjacent_find(strains.begin(), strains.end(), std::greater_equal<>{});
-  if (turn == strains.end()) return "";
-  return fmt::format("loading.unload_at must be ascending: {} stands before {}", *turn, *(turn + 1));
-}
-
-std::string unloading_after_the_end(const Case& c) {
-  const auto& strains = c.loading.unload_at;
-  const auto late =
-      std::find_if(strains.begin(), strains.end(), [&](double eps) { return eps >= c.loading.max_strain; });
-  if (late == strains.end()) return "";
-  return fmt::format("loading.unload_at must be below loading.max_strain: {} is not below {}", *late,
-                     c.loading.max_strain);
-}
-
-std::string unloading_below_zero(const Case& c) {
-  const auto& strains = c.loading.unload_at;
-  if (strains.empty() || c.loading.unload_by < strains.front()) return "";
-  return fmt::format("loading.unload_by must be below the first of loading.unload_at: {} is not below {}",
-                     c.loading.unload_by, strains.front());
-}
-
-std::string sweeps_reversed(const Case& c) {
-  if (c.solver.min_sweeps <= c.solver.max_sweeps) return "";
-  return fmt::format("solver.min_sweeps must not be above solver.max_sweeps: {} is above {}",
-                     c.solver.min_sweeps, c.solver.max_sweeps);
-}
-
-std::string restitution_anticipated(const Case& c) {
-  if (c.experiment.model != "bpm" || c.contact.restitution == 0 || c.contact.activation != "anticipated")
-    return "";
-  return fmt::format(
-      "contact.restitution {} needs contact.activation \"closed_at_mid_step\" or \"closed_at_end_of_step\": "
-      "anticipated contacts stop the particles before they touch",
-      c.contact.restitution);
-}
-
-std::string diameters_reversed(const Case& c) {
-  if (c.sample.smallest_diameter <= c.sample.largest_diameter) return "";
-  return fmt::format("sample.smallest_diameter must not be above sample.largest_diameter: {} m is above {} m",
-                     c.sample.smallest_diameter, c.sample.largest_diameter);
-}
-
-std::string too_many_steps(const Case& c) {
-  constexpr double most = 1e12;
-  const double steps = estimate(c).steps;
-  if (steps <= most) return "";
-  return fmt::format("about {:.1g} time steps are too many: raise the time step or loading.wall_velocity",
-                     steps);
-}
-
-std::string too_dense_from_the_start(const Case& c) {
-  const double last = c.loading.max_packing_fraction;
-  if (c.experiment.loading == "diametral" || last == 0 || last > c.sample.packing_fraction) return "";
-  return fmt::format("loading.max_packing_fraction must be above sample.packing_fraction: {} is not above {}",
-                     last, c.sample.packing_fraction);
-}
-
-std::string cannot_hold_a_stress(const Case& c) {
-  if (c.loading.hold_stress == 0) return "";
-  if (c.experiment.loading == "diametral")
-    return "loading.hold_stress needs a box: experiment.loading \"compaction\" or \"isotropic\"";
-  return c.loading.hold > 0 ? "" : "loading.hold_stress needs loading.hold > 0: for how long";
-}
-
-std::string formulation_cannot(const Case& c) {
-  const bool updated = c.mpm.formulation == "updated_lagrangian";
-  if (c.experiment.model != "mpm") return "";
-  if (updated && c.experiment.loading != "diametral")
-    return fmt::format(
-        "mpm.formulation \"updated_lagrangian\" needs experiment.loading \"diametral\", not \"{}\"",
-        c.experiment.loading);
-  if (!updated && c.mpm.contact_on != "outline")
-    return fmt::format("mpm.contact_on \"{}\" needs mpm.formulation \"updated_lagrangian\"",
-                       c.mpm.contact_on);
-  return "";
-}
-
 }  // namespace
 
 bool Range::contains(double value) const {
@@ -254,26 +192,6 @@ const std::vector<Key>& case_keys() {
 const std::vector<TableOfKeys>& case_tables() {
   static const std::vector<TableOfKeys> tables = all_tables();
   return tables;
-}
-
-const std::vector<Relation>& case_relations() {
-  static const std::vector<Relation> relations{
-      {{"loading.unload_at"}, unloading_not_ascending},
-      {{"loading.unload_at", "loading.max_strain"}, unloading_after_the_end},
-      {{"loading.unload_by", "loading.unload_at"}, unloading_below_zero},
-      {{"solver.min_sweeps", "solver.max_sweeps"}, sweeps_reversed},
-      {{"sample.smallest_diameter", "sample.largest_diameter"}, diameters_reversed},
-      {{"time.step"}, bond_step_too_long},
-      {{"contact.restitution", "contact.activation"}, restitution_anticipated},
-      {{"time.step", "mpm.time_step", "loading.wall_velocity", "loading.max_strain", "grain.radius",
-        "grain.density", "bpm.attraction", "bpm.cohesive_pressure", "bpm.primaries", "bpm.size_ratio",
-        "bpm.exponent", "sample.smallest_diameter"},
-       too_many_steps},
-      {{"mpm.formulation", "mpm.contact_on", "experiment.loading"}, formulation_cannot},
-      {{"loading.max_packing_fraction", "sample.packing_fraction"}, too_dense_from_the_start},
-      {{"loading.hold_stress", "loading.hold", "experiment.loading"}, cannot_hold_a_stress},
-  };
-  return relations;
 }
 
 const Key* find_key(std::string_view name) {

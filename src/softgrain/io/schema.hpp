@@ -22,17 +22,19 @@ struct Range {
   std::string text() const;  ///< "> 0", ">= 1", "in [0, 1]", "in (0, 2)", "" for all
 };
 
-/// What a key takes: a range of numbers, or some words.
-struct Allowed {
-  Range range = {};
-  std::vector<std::string> words = {};
-};
-
 /// Where a key's value lies in a Case; the type it takes follows from it.
 template <class T>
 using MemberOf = T& (*)(Case&);
+/// An enum in a Case, seen through its words (experiment/words.hpp).
+struct WordMember {
+  std::vector<std::string> (*words)();           ///< all that it takes
+  std::string_view (*word)(const Case&);         ///< that of its value
+  bool (*assign)(Case&, std::string_view word);  ///< false: not one of the words
+
+  std::string_view operator()(const Case& c) const { return word(c); }
+};
 using Member = std::variant<MemberOf<bool>, MemberOf<int>, MemberOf<std::int64_t>, MemberOf<double>,
-                            MemberOf<std::string>, MemberOf<std::vector<double>>>;
+                            WordMember, MemberOf<std::vector<double>>>;
 
 /// One key of a case file. Its default is the value in Case{}.
 struct Key {
@@ -40,7 +42,7 @@ struct Key {
   Member member;
   std::string_view
       unit;  ///< in which people write it: "mm"; fixes the dimension; "" for plain numbers and words
-  Allowed allowed;
+  Range range;
   std::string_view text;
   Scope acts = scope::everywhere;  ///< where it acts; elsewhere it is taken, and a note says so
 
@@ -53,17 +55,10 @@ struct TableOfKeys {
   std::string_view text;
 };
 
-/// Keys that must fit together, checked once each of them is valid alone.
-struct Relation {
-  std::vector<std::string> keys;
-  std::string (*broken)(const Case&);  ///< what is wrong, or ""
-};
-
 /// The one list of all keys: parser, checks, JSON Schema, reference page, template and resolved case follow
 /// it.
 const std::vector<Key>& case_keys();
 const std::vector<TableOfKeys>& case_tables();
-const std::vector<Relation>& case_relations();
 
 /// nullptr when there is no key of this full name.
 const Key* find_key(std::string_view name);

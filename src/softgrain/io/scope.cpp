@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "softgrain/experiment/words.hpp"
 #include "softgrain/io/schema.hpp"
 
 namespace softgrain {
@@ -33,7 +34,7 @@ std::vector<std::string> notes_on_effect(const Case& the_case, const std::vector
   for (const auto& [words, names] : names_of_scopes) {
     const bool one = names.size() == 1;
     notes.push_back(fmt::format("note: {} {} no effect on {} {}: {} only {}", listed(names),
-                                one ? "has" : "have", the_case.experiment.model,
+                                one ? "has" : "have", word_of(the_case.experiment.model),
                                 scope::is_in_a_box(the_case) ? "in a box" : "between plates",
                                 one ? "it acts" : "they act", words));
   }

@@ -15,11 +15,11 @@ struct Scope {
 
 namespace scope {
 
-inline bool is_bpm(const Case& c) { return c.experiment.model == "bpm"; }
-inline bool is_mpm(const Case& c) { return c.experiment.model == "mpm"; }
-inline bool is_in_a_box(const Case& c) { return c.experiment.loading != "diametral"; }
+inline bool is_bpm(const Case& c) { return c.experiment.model == GrainModel::bpm; }
+inline bool is_mpm(const Case& c) { return c.experiment.model == GrainModel::mpm; }
+inline bool is_in_a_box(const Case& c) { return c.experiment.loading != LoadingPath::diametral; }
 inline bool is_updated_lagrangian(const Case& c) {
-  return is_mpm(c) && c.mpm.formulation == "updated_lagrangian";
+  return is_mpm(c) && c.mpm.formulation == Formulation::updated_lagrangian;
 }
 inline bool is_total_lagrangian(const Case& c) { return is_mpm(c) && !is_updated_lagrangian(c); }
 
@@ -34,9 +34,9 @@ inline constexpr Scope bpm_between_plates{"on bpm between plates",
                                           [](const Case& c) { return is_bpm(c) && !is_in_a_box(c); }};
 inline constexpr Scope total_lagrangian{"on total_lagrangian mpm", is_total_lagrangian};
 inline constexpr Scope updated_lagrangian{"on updated_lagrangian mpm", is_updated_lagrangian};
-inline constexpr Scope implicit{"on implicit mpm", [](const Case& c) {
-                                  return is_total_lagrangian(c) && c.mpm.integrator == "implicit";
-                                }};
+inline constexpr Scope implicit{
+    "on implicit mpm",
+    [](const Case& c) { return is_total_lagrangian(c) && c.mpm.integrator == Integrator::backward_euler; }};
 inline constexpr Scope with_pairs{"on bpm or between the grains of a box", [](const Case& c) {
                                     return is_bpm(c) || (is_in_a_box(c) && c.sample.grains > 1);
                                   }};

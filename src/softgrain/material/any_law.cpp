@@ -1,7 +1,6 @@
 #include "softgrain/material/any_law.hpp"
 
-#include <algorithm>
-#include <string>
+#include <cassert>
 
 #include "softgrain/material/elastic_law.hpp"
 
@@ -22,17 +21,19 @@ AnyLaw make(double E, double nu) {
 
 const std::array<LawChoice, 6>& law_choices() {
   static constexpr std::array<LawChoice, 6> choices{{
-      {"neo_hookean", "neo-Hookean, lambda/2 (ln J)^2 for the volume", "", make<neo_hookean>},
-      {"neo_hookean_quadratic", "neo-Hookean, lambda/2 (J - 1)^2 for the volume: faster, softer when crushed",
-       "", make<neo_hookean_quadratic>},
-      {"hencky", "Hooke's law in logarithmic strains", "", make<hencky>},
-      {"corotated", "Hooke's law in the turned frame", "", make<corotated>},
-      {"small_strain_hooke", "Hooke's law in the small strain",
+      {MaterialLaw::neo_hookean, "neo_hookean", "neo-Hookean, lambda/2 (ln J)^2 for the volume", "",
+       make<neo_hookean>},
+      {MaterialLaw::neo_hookean_quadratic, "neo_hookean_quadratic",
+       "neo-Hookean, lambda/2 (J - 1)^2 for the volume: faster, softer when crushed", "",
+       make<neo_hookean_quadratic>},
+      {MaterialLaw::hencky, "hencky", "Hooke's law in logarithmic strains", "", make<hencky>},
+      {MaterialLaw::corotated, "corotated", "Hooke's law in the turned frame", "", make<corotated>},
+      {MaterialLaw::small_strain_hooke, "small_strain_hooke", "Hooke's law in the small strain",
        "small_strain_hooke takes what a grain turns during the run for a strain of 1 - cos(angle), 1.5 % at "
        "10 "
        "degrees: only for grains that hardly turn and deform little",
        make<small_strain_hooke>},
-      {"st_venant_kirchhoff", "Hooke's law in Green's strain",
+      {MaterialLaw::st_venant_kirchhoff, "st_venant_kirchhoff", "Hooke's law in Green's strain",
        "st_venant_kirchhoff softens under compression and turns points inside out in dense packings: only to "
        "compare with the paper's Fig. 1",
        make<st_venant_kirchhoff>},
@@ -40,17 +41,12 @@ const std::array<LawChoice, 6>& law_choices() {
   return choices;
 }
 
-const LawChoice& law_choice(std::string_view name) {
-  const auto& choices = law_choices();
-  const auto found =
-      std::find_if(choices.begin(), choices.end(), [&](const auto& c) { return c.name == name; });
-  std::string names;
-  for (const LawChoice& choice : choices)
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", choice.name);
-  require(found != choices.end(), "unknown elastic law '{}'; the laws are {}", name, names);
-  return *found;
+const LawChoice& law_choice(MaterialLaw law) {
+  const LawChoice& choice = law_choices()[static_cast<std::size_t>(law)];
+  assert(choice.law == law);
+  return choice;
 }
 
-AnyLaw make_law(std::string_view name, double E, double nu) { return law_choice(name).make(E, nu); }
+AnyLaw make_law(MaterialLaw law, double E, double nu) { return law_choice(law).make(E, nu); }
 
 }  // namespace softgrain

@@ -5,6 +5,7 @@
 
 #include "softgrain/material/corotated.hpp"
 #include "softgrain/material/hencky.hpp"
+#include "softgrain/material/material_law.hpp"
 #include "softgrain/material/neo_hookean.hpp"
 #include "softgrain/material/small_strain_hooke.hpp"
 #include "softgrain/material/st_venant_kirchhoff.hpp"
@@ -15,22 +16,21 @@ namespace softgrain {
 using AnyLaw = std::variant<NeoHookean<LogVolume>, NeoHookean<QuadraticVolume>, Hencky, Corotated,
                             SmallStrainHooke, StVenantKirchhoff>;
 
-/// A law by its name in case files.
+/// A law and its name in case files.
 struct LawChoice {
+  MaterialLaw law;
   std::string_view name;
   std::string_view text;     ///< what it is, for the documentation of the key
   std::string_view caution;  ///< what the program tells the user who chooses it; empty: nothing
   AnyLaw (*make)(double E, double nu);
 };
 
-/// All laws, the default first.
+/// All laws, in the order of MaterialLaw: the default first.
 const std::array<LawChoice, 6>& law_choices();
 
-/// The choice of that name; UsageError naming all of them if there is none.
-const LawChoice& law_choice(std::string_view name);
+const LawChoice& law_choice(MaterialLaw law);
 
-/// The law of that name from Young's modulus E [Pa] and Poisson's ratio nu; UsageError as law_choice and
-/// lame.
-AnyLaw make_law(std::string_view name, double E, double nu);
+/// The law from Young's modulus E [Pa] and Poisson's ratio nu; UsageError as lame.
+AnyLaw make_law(MaterialLaw law, double E, double nu);
 
 }  // namespace softgrain

@@ -1,11 +1,10 @@
 #pragma once
 #include <cmath>
 
+#include "softgrain/math/precision.hpp"
 #include "softgrain/math/wide.hpp"
 
 namespace softgrain {
-
-enum class Precision { full, single };  ///< double, float
 
 /// Eight numbers in single precision: half the memory and half the work of Wide, for what is corrected later.
 struct Narrow {

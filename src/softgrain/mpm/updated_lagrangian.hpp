@@ -4,18 +4,13 @@
 #include "softgrain/contact/solver_options.hpp"
 #include "softgrain/geometry/wall.hpp"
 #include "softgrain/material/any_law.hpp"
+#include "softgrain/mpm/contact_on.hpp"
 #include "softgrain/mpm/lattice_contacts.hpp"
 #include "softgrain/mpm/point_grain.hpp"
 #include "softgrain/mpm/soft_step_report.hpp"
 #include "softgrain/mpm/wall_motion.hpp"
 
 namespace softgrain {
-
-/// Where grains of points meet.
-enum class ContactOn {
-  outline,     ///< vertices of an outline against segments and walls
-  grid_nodes,  ///< nodes where two grains, or a grain and a wall, have mass
-};
 
 struct UpdatedLagrangianOptions {
   ShapeFunction shape = ShapeFunction::gimp;

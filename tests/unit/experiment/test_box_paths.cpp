@@ -14,9 +14,9 @@ namespace {
 using Implicit = MpmSimulation<ImplicitDynamics>;
 using Explicit = MpmSimulation<ExplicitDynamics>;
 
-Case soft_packing(const char* loading, const char* integrator = "implicit") {
+Case soft_packing(LoadingPath loading, Integrator integrator = Integrator::backward_euler) {
   Case c;
-  c.experiment = {.loading = loading, .model = "mpm"};
+  c.experiment = {.loading = loading, .model = GrainModel::mpm};
   c.mpm.cells = 3;
   c.mpm.integrator = integrator;
   c.contact.friction = c.contact.wall_friction = 0.3;
@@ -26,9 +26,9 @@ Case soft_packing(const char* loading, const char* integrator = "implicit") {
   return c;
 }
 
-Case bonded_packing(const char* loading) {
+Case bonded_packing(LoadingPath loading) {
   Case c = soft_packing(loading);
-  c.experiment.model = "bpm";
+  c.experiment.model = GrainModel::bpm;
   c.bpm.primaries = 30;
   c.bpm.library = 2;
   c.loading.wall_velocity = 5;
@@ -116,7 +116,7 @@ void check_same_bits(const Checkpoint& a, const Checkpoint& b) {
 }  // namespace
 
 TEST_CASE("an isotropic box keeps its shape and its centre, and Phi_0 = Phi_start e^(2 eps)") {
-  for (Case c : {soft_packing("isotropic"), bonded_packing("isotropic")}) {
+  for (Case c : {soft_packing(LoadingPath::isotropic), bonded_packing(LoadingPath::isotropic)}) {
     CAPTURE(c.experiment.model);
     c.sample.aspect = 1.5;
     const auto simulation = create_simulation(c);
@@ -140,15 +140,15 @@ TEST_CASE("an isotropic box keeps its shape and its centre, and Phi_0 = Phi_star
 }
 
 TEST_CASE("what the momentum of grains loses, the four walls of an isotropic box gain") {
-  CHECK(momentum_error<Implicit>(*create_simulation(soft_packing("isotropic"))) < 1e-6);
-  Case c = soft_packing("isotropic", "explicit");
+  CHECK(momentum_error<Implicit>(*create_simulation(soft_packing(LoadingPath::isotropic))) < 1e-6);
+  Case c = soft_packing(LoadingPath::isotropic, Integrator::symplectic_euler);
   c.loading.wall_velocity = 20;
   CHECK(momentum_error<Explicit>(*create_simulation(c)) < 1e-12);
-  CHECK(momentum_error<BpmCompaction>(*create_simulation(bonded_packing("isotropic"))) < 1e-12);
+  CHECK(momentum_error<BpmCompaction>(*create_simulation(bonded_packing(LoadingPath::isotropic))) < 1e-12);
 }
 
 TEST_CASE("walls keep the stress of a packing that they are asked to keep") {
-  for (const char* loading : {"compaction", "isotropic"}) {
+  for (const LoadingPath loading : {LoadingPath::compaction, LoadingPath::isotropic}) {
     CAPTURE(loading);
     Case c = soft_packing(loading);
     c.mpm.time_step = 5e-6;
@@ -156,7 +156,7 @@ TEST_CASE("walls keep the stress of a packing that they are asked to keep") {
     c.loading.hold_stress = 4e5;
     CHECK(held_stress(*create_simulation(c), 300) == doctest::Approx(4e5).epsilon(0.01));
   }
-  Case c = bonded_packing("compaction");
+  Case c = bonded_packing(LoadingPath::compaction);
   c.loading.hold = 4e-3;
   c.loading.hold_stress = 2e5;
   CHECK(held_stress(*create_simulation(c), 10000) == doctest::Approx(2e5).epsilon(0.02));
@@ -165,7 +165,7 @@ TEST_CASE("walls keep the stress of a packing that they are asked to keep") {
 TEST_CASE("a held stress is kept, in grains soft and stiff, and never far exceeded") {
   for (const double young_modulus : {1e6, 1e9}) {
     CAPTURE(young_modulus);
-    Case c = soft_packing("compaction");
+    Case c = soft_packing(LoadingPath::compaction);
     c.mpm.young_modulus = young_modulus;
     c.loading.wall_velocity = 0.5;
     c.loading.hold = 12e-3;
@@ -176,7 +176,7 @@ TEST_CASE("a held stress is kept, in grains soft and stiff, and never far exceed
     CHECK(simulation->early_end().starts_with("loading.hold_stress was kept"));
     CHECK(simulation->outcome().completed);
   }
-  Case c = soft_packing("isotropic", "explicit");
+  Case c = soft_packing(LoadingPath::isotropic, Integrator::symplectic_euler);
   c.mpm.young_modulus = 1e7;
   c.loading.wall_velocity = 0.5;
   c.loading.hold = 12e-3;
@@ -188,7 +188,7 @@ TEST_CASE("a held stress is kept, in grains soft and stiff, and never far exceed
 }
 
 TEST_CASE("walls that keep a stress go on from a checkpoint bit for bit") {
-  Case soft = soft_packing("isotropic"), bonded = bonded_packing("compaction");
+  Case soft = soft_packing(LoadingPath::isotropic), bonded = bonded_packing(LoadingPath::compaction);
   soft.loading.hold_stress = bonded.loading.hold_stress = 2e5;
   soft.loading.hold = bonded.loading.hold = 3e-4;
   for (const Case& c : {soft, bonded}) {

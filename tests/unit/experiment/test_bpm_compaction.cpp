@@ -21,7 +21,7 @@ namespace {
 /// Six grains of few primaries, a fast lid.
 Case small_case() {
   Case c;
-  c.experiment = {.loading = "compaction", .model = "bpm"};
+  c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::bpm};
   c.sample.grains = 6;
   c.sample.packing_fraction = 0.6;
   c.bpm.primaries = 30;
@@ -61,7 +61,7 @@ TEST_CASE("both models begin with the same sample, bit for bit") {
   c.sample.seed = 7;
   const BpmCompaction bpm(c);
   CHECK(hash_of(bpm.sample()) == hash_of(sample_box({.grains = 6, .packing_fraction = 0.6, .seed = 7})));
-  c.experiment.model = "mpm";
+  c.experiment.model = GrainModel::mpm;
   c.mpm.cells = 4;
   const Scene scene = create_simulation(c)->scene();
   // outlines of soft grains: their vertices lie evenly round the centre
@@ -152,7 +152,7 @@ TEST_CASE("F0 follows the size of the primaries, so that every grain has the sam
 TEST_CASE("with primaries of one size, larger grains have more of them") {
   Case c = small_case();
   c.sample.grains = 12;
-  c.bpm.equal = "size";
+  c.bpm.equal = EqualPrimaries::size;
   c.bpm.library = 5;
   const BoxSample box = sample_box(c);
   const BpmSample sample = fill_box(box, prepare_library(c), c);
@@ -166,8 +166,6 @@ TEST_CASE("with primaries of one size, larger grains have more of them") {
     largest = std::max(largest, sum);
   }
   CHECK(largest / smallest < 1.2);
-  c.bpm.equal = "mass";
-  CHECK_THROWS_AS(prepare_library(c), UsageError);
 }
 
 TEST_CASE("a packing is compacted until its primaries are close packed, whole, and says why it ends") {

@@ -263,10 +263,6 @@ TEST_CASE("a compression that cannot be run is refused with the key and the valu
     change(c);
     return [c] { BpmCompression{c}; };
   };
-  CHECK_THROWS_WITH_AS(with([](Case& c) { c.contact.activation = "never"; })(),
-                       "contact.activation must be 'anticipated', 'closed_at_mid_step' or "
-                       "'closed_at_end_of_step', got 'never'",
-                       UsageError);
   CHECK_THROWS_AS(with([](Case& c) { c.contact.restitution = 0.5; })(), UsageError);
   CHECK_THROWS_AS(with([](Case& c) { c.contact.push_out = 2; })(), UsageError);
   CHECK_THROWS_AS(with([](Case& c) { c.bpm.attraction = -1; })(), UsageError);

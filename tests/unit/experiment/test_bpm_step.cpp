@@ -18,7 +18,7 @@ namespace {
 
 Case packing() {
   Case c;
-  c.experiment = {.loading = "compaction", .model = "bpm"};
+  c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::bpm};
   c.bpm.primaries = 200;
   return c;
 }

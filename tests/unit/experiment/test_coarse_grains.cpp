@@ -11,9 +11,9 @@ using namespace softgrain;
 
 namespace {
 
-Case packing(int cells, const std::string& integrator, int grains = 100) {
+Case packing(int cells, Integrator integrator, int grains = 100) {
   Case c;
-  c.experiment = {.loading = "compaction", .model = "mpm"};
+  c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::mpm};
   c.mpm.cells = cells;
   c.mpm.integrator = integrator;
   c.sample.grains = grains;
@@ -44,7 +44,7 @@ void check_at_rest(const Case& c, Simulation& simulation) {
 
 TEST_CASE("grains of few cells start without overlap and store nothing at once") {
   for (const int cells : {2, 3, 4, 5, 6})
-    for (const std::string integrator : {"implicit", "explicit"}) {
+    for (const Integrator integrator : {Integrator::backward_euler, Integrator::symplectic_euler}) {
       CAPTURE(cells);
       CAPTURE(integrator);
       Case c = packing(cells, integrator);
@@ -59,7 +59,7 @@ TEST_CASE("grains of few cells start without overlap and store nothing at once")
 TEST_CASE("an explicit start of grains of two cells does not depend on the step") {
   for (const double step : {9e-8, 4e-8, 1e-8}) {
     CAPTURE(step);
-    Case c = packing(2, "explicit", 300);
+    Case c = packing(2, Integrator::symplectic_euler, 300);
     c.mpm.time_step = step;
     const auto simulation = create_simulation(c);
     for (int k = 0; k < 20; ++k) simulation->step();
@@ -69,7 +69,7 @@ TEST_CASE("an explicit start of grains of two cells does not depend on the step"
 
 TEST_CASE("grains of two cells take no more Newton iterations at the start than grains of three") {
   const auto iterations = [](int cells) {
-    Case c = packing(cells, "implicit", 300);
+    Case c = packing(cells, Integrator::backward_euler, 300);
     c.loading.wall_velocity = 5;
     const auto simulation = create_simulation(c);
     int sum = 0;
@@ -84,11 +84,11 @@ TEST_CASE("grains of two cells take no more Newton iterations at the start than 
 
 TEST_CASE("a grain of any number of cells starts between plates that only touch it") {
   for (const int cells : {2, 3, 4, 5, 8})
-    for (const std::string integrator : {"implicit", "explicit"}) {
+    for (const Integrator integrator : {Integrator::backward_euler, Integrator::symplectic_euler}) {
       CAPTURE(cells);
       CAPTURE(integrator);
       Case c;
-      c.experiment = {.loading = "diametral", .model = "mpm"};
+      c.experiment = {.loading = LoadingPath::diametral, .model = GrainModel::mpm};
       c.mpm.cells = cells;
       c.mpm.integrator = integrator;
       c.mpm.time_step = 1e-7;

@@ -14,9 +14,9 @@ using namespace softgrain;
 
 namespace {
 
-Case packing(const char* model) {
+Case packing(GrainModel model) {
   Case c;
-  c.experiment = {.loading = "compaction", .model = model};
+  c.experiment = {.loading = LoadingPath::compaction, .model = model};
   c.grain.density = 990;
   c.bpm.primaries = 20;
   c.mpm.cells = 3;
@@ -55,7 +55,7 @@ int pushing(const SolvedContactProblem& solved) {
 }  // namespace
 
 TEST_CASE("W p + q of a step of bonded grains is the velocity at which their surfaces part after it") {
-  const Case c = packing("bpm");
+  const Case c = packing(GrainModel::bpm);
   const auto simulation = create_simulation(c);
   advance(*simulation, 0.4);
   const SolvedContactProblem solved = simulation->step_and_catch_problem();
@@ -85,7 +85,7 @@ TEST_CASE("W p + q of a step of bonded grains is the velocity at which their sur
 
 TEST_CASE(
     "the problem of an implicit step of elastic grains is symmetric and solved by the step's impulses") {
-  const auto simulation = create_simulation(packing("mpm"));
+  const auto simulation = create_simulation(packing(GrainModel::mpm));
   advance(*simulation, 0.4);
   const SolvedContactProblem solved = simulation->step_and_catch_problem();
   CHECK(pushing(solved) > 5);
@@ -101,7 +101,7 @@ TEST_CASE(
 }
 
 TEST_CASE("catching the problem of a step changes nothing of the step") {
-  for (const char* model : {"bpm", "mpm"}) {
+  for (const GrainModel model : {GrainModel::bpm, GrainModel::mpm}) {
     CAPTURE(model);
     const auto plain = create_simulation(packing(model)), watched = create_simulation(packing(model));
     for (int k = 0; k < 30; ++k) {
@@ -114,7 +114,7 @@ TEST_CASE("catching the problem of a step changes nothing of the step") {
 }
 
 TEST_CASE("explicit integration has no contact problem to show") {
-  Case c = packing("mpm");
-  c.mpm.integrator = "explicit";
+  Case c = packing(GrainModel::mpm);
+  c.mpm.integrator = Integrator::symplectic_euler;
   CHECK_THROWS_AS(create_simulation(c)->step_and_catch_problem(), UsageError);
 }

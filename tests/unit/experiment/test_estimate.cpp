@@ -22,7 +22,7 @@ TEST_CASE("the estimate counts the steps of every path") {
   Case c;
   const auto squeeze = static_cast<double>(DiametralPath(c.loading, c.grain.radius, 0.25e-6).steps());
   CHECK(estimate(c).steps == doctest::Approx(squeeze).epsilon(1e-3));
-  c.experiment = {.loading = "compaction", .model = "mpm"};
+  c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::mpm};
   c.sample.smallest_diameter = c.sample.largest_diameter = 2e-3;
   c.sample.packing_fraction = 0.5;
   c.mpm.time_step = 1e-6;
@@ -46,7 +46,7 @@ TEST_CASE("half the time step doubles the steps and the hours") {
 
 TEST_CASE("a batch of eight grains costs what one grain costs") {
   Case c;
-  c.experiment = {.loading = "compaction", .model = "mpm"};
+  c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::mpm};
   c.mpm.time_step = 1e-6;
   c.sample.grains = 1;
   const Estimate one = estimate(c);
@@ -61,7 +61,7 @@ TEST_CASE("the hours are within a factor of two of what the paper's runs took") 
   Case c;
   c.grain.radius = 5e-3;
   CHECK(std::abs(std::log2(3600 * estimate(c).hours / 15)) < 1);  // one bonded grain, 69 011 steps
-  c.experiment = {.loading = "compaction", .model = "bpm"};
+  c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::bpm};
   c.sample.grains = 300;
   c.loading.wall_velocity = 5;
   c.loading.max_strain = 0.40;
@@ -69,20 +69,20 @@ TEST_CASE("the hours are within a factor of two of what the paper's runs took") 
   c.bpm.primaries = 200;
   c.time.step = 0.1e-6;
   CHECK(std::abs(std::log2(3600 * estimate(c).hours / 224)) < 1);
-  c.experiment.model = "mpm";
+  c.experiment.model = GrainModel::mpm;
   c.loading.max_packing_fraction = 0.985;
   c.mpm.cells = 16;
   c.mpm.time_step = 5e-6;
   CHECK(std::abs(std::log2(3600 * estimate(c).hours / 116)) < 1);
   c.mpm.time_step = 0;
-  c.mpm.integrator = "explicit";
+  c.mpm.integrator = Integrator::symplectic_euler;
   CHECK(std::abs(std::log2(3600 * estimate(c).hours / 189)) < 1);
 }
 
 TEST_CASE("memory and disk of many small bonded grains are within a factor of two of what a run took") {
   // peak and files of 100 000 grains of 7 primaries, one step, a release build
   Case c;
-  c.experiment.loading = "compaction";
+  c.experiment.loading = LoadingPath::compaction;
   c.bpm.primaries = 7;
   c.sample.grains = 100000;
   c.loading.max_strain = 1e-9;  // one step
@@ -95,7 +95,7 @@ TEST_CASE("memory and disk of many small bonded grains are within a factor of tw
 TEST_CASE("the hours of elastic grains are within a factor of two of what they took at any speed") {
   // CPU time of 20 grains of 6 cells under a lid to eps = 0.3, and of one of 16 cells between plates to 0.1
   Case c;
-  c.experiment = {.loading = "compaction", .model = "mpm"};
+  c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::mpm};
   c.mpm.cells = 6;
   c.loading.max_strain = 0.3;
   struct Measured {
@@ -106,7 +106,7 @@ TEST_CASE("the hours of elastic grains are within a factor of two of what they t
     c.loading.wall_velocity = speed;
     CHECK(std::abs(std::log2(3600 * estimate(c).hours / seconds)) < 1);
   }
-  c.experiment.loading = "diametral";
+  c.experiment.loading = LoadingPath::diametral;
   c.mpm.cells = 16;
   c.loading.max_strain = 0.1;
   for (const double speed : {0.2, 1e-2, 1e-3, 1.67e-5}) {
@@ -133,7 +133,7 @@ TEST_CASE("the memory of elastic grains is within a quarter of what runs took") 
     double bytes;
   };
   Case c;
-  c.experiment = {.loading = "compaction", .model = "mpm"};
+  c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::mpm};
   for (const auto& [grains, cells, bytes] :
        {Measured{300, 8, 288e6}, {1000, 4, 222e6}, {10, 24, 119e6}, {1, 32, 72e6}}) {
     CAPTURE(grains);

@@ -15,9 +15,9 @@ namespace {
 
 Case squeezed_grain(int cells, double speed) {
   Case c;
-  c.experiment = {.loading = "diametral", .model = "mpm"};
+  c.experiment = {.loading = LoadingPath::diametral, .model = GrainModel::mpm};
   c.mpm.cells = cells;
-  c.mpm.integrator = "explicit";
+  c.mpm.integrator = Integrator::symplectic_euler;
   c.loading = {.wall_velocity = speed, .max_strain = 1.5};
   return c;
 }
@@ -77,12 +77,12 @@ TEST_CASE("an explicit time step up to the longest stable one runs, a longer one
   CHECK_NOTHROW(create_simulation(c)->step());
   c.mpm.time_step = 1.001 * longest;
   CHECK_THROWS_WITH_AS(create_simulation(c), doctest::Contains("or 0 for the default"), UsageError);
-  c.experiment.loading = "isotropic";  // the smallest grain that the case allows
+  c.experiment.loading = LoadingPath::isotropic;  // the smallest grain that the case allows
   c.mpm.time_step = 1.001 * longest * c.sample.smallest_diameter / 2 / c.grain.radius;
   CHECK_THROWS_AS(check_time_step(c), UsageError);
   c.mpm.time_step = 0.999 * longest * c.sample.smallest_diameter / 2 / c.grain.radius;
   CHECK_NOTHROW(check_time_step(c));
-  c.mpm.integrator = "implicit";
+  c.mpm.integrator = Integrator::backward_euler;
   c.mpm.time_step = 1;
   CHECK_NOTHROW(check_time_step(c));
 }

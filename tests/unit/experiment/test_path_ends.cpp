@@ -16,7 +16,7 @@ double value_of(const std::vector<Quantity>& row, std::string_view name) {
 }
 
 /// Few legs, most of them shorter than a step, so that a rounding to whole steps would be seen at once.
-Case case_of(const char* loading, const char* model) {
+Case case_of(LoadingPath loading, GrainModel model) {
   Case c;
   c.experiment = {.loading = loading, .model = model};
   c.bpm.primaries = 30;
@@ -26,7 +26,7 @@ Case case_of(const char* loading, const char* model) {
   c.sample.packing_fraction = 0.3;
   c.loading = {.wall_velocity = 1, .max_strain = 0.011, .unload_at = {0.003, 0.006, 0.01}, .unload_by = 2e-4};
   c.time.step = 2e-6;
-  if (c.experiment.model == "bpm") c.loading.wall_velocity = 2.5;  // as far in a step
+  if (c.experiment.model == GrainModel::bpm) c.loading.wall_velocity = 2.5;  // as far in a step
   c.mpm.time_step = 40e-6;
   return c;
 }
@@ -38,7 +38,7 @@ void check_ends(const Case& c) {
   CAPTURE(c.mpm.integrator);
   const auto simulation = create_simulation(c);
   const double start = value_of(simulation->observe(), "wall_height");
-  const bool box = c.experiment.loading != "diametral";
+  const bool box = c.experiment.loading != LoadingPath::diametral;
   const auto strain = [&] {
     const double h = value_of(simulation->observe(), "wall_height");
     return box ? std::log(start / h) : -std::log(1 - (start - h) / (2 * c.grain.radius));
@@ -59,26 +59,27 @@ void check_ends(const Case& c) {
 }  // namespace
 
 TEST_CASE("every leg of every model ends at its strain, be it shorter than a step") {
-  for (const char* loading : {"diametral", "compaction", "isotropic"}) {
-    check_ends(case_of(loading, "bpm"));
-    Case c = case_of(loading, "mpm");
+  for (const LoadingPath loading :
+       {LoadingPath::diametral, LoadingPath::compaction, LoadingPath::isotropic}) {
+    check_ends(case_of(loading, GrainModel::bpm));
+    Case c = case_of(loading, GrainModel::mpm);
     check_ends(c);
-    c.mpm.integrator = "explicit";
+    c.mpm.integrator = Integrator::symplectic_euler;
     c.mpm.time_step = 0;
     c.loading.wall_velocity = 40;  // as far in a step
     check_ends(c);
-    if (c.experiment.loading != "diametral") continue;
-    c.mpm.formulation = "updated_lagrangian";
+    if (c.experiment.loading != LoadingPath::diametral) continue;
+    c.mpm.formulation = Formulation::updated_lagrangian;
     check_ends(c);
   }
 }
 
 TEST_CASE("a packing fraction that is asked for at the end is met") {
-  Case c = case_of("isotropic", "mpm");
+  Case c = case_of(LoadingPath::isotropic, GrainModel::mpm);
   c.loading.unload_at = {};
   c.loading.max_strain = 1;
   c.loading.max_packing_fraction = 0.313;
-  for (const char* loading : {"compaction", "isotropic"}) {
+  for (const LoadingPath loading : {LoadingPath::compaction, LoadingPath::isotropic}) {
     c.experiment.loading = loading;
     const auto simulation = create_simulation(c);
     while (!simulation->finished()) simulation->step();

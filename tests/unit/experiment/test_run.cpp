@@ -88,24 +88,3 @@ TEST_CASE("a finished simulation makes no step") {
   run(simulation, recorder);
   CHECK(run(simulation, recorder).steps == 0);
 }
-
-TEST_CASE("a loading or a model that does not exist is refused by key and name") {
-  const auto complaint = [](const std::string& loading, const std::string& model) -> std::string {
-    Case unknown;
-    unknown.experiment = {.loading = loading, .model = model};
-    try {
-      create_simulation(unknown);
-    } catch (const UsageError& error) {
-      return error.what();
-    }
-    return "none";
-  };
-  const auto has = [](const std::string& text, const char* part) {
-    return text.find(part) != std::string::npos;
-  };
-  const std::string torsion = complaint("torsion", "bpm"), fem = complaint("diametral", "fem");
-  CHECK(has(torsion, "experiment.loading"));
-  CHECK(has(torsion, "'torsion'"));
-  CHECK(has(fem, "experiment.model"));
-  CHECK(has(fem, "'fem'"));
-}

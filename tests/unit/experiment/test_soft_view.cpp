@@ -25,9 +25,9 @@ const std::vector<std::int64_t>& integers(const Array& array) {
   return std::get<std::vector<std::int64_t>>(array.values);
 }
 
-Case packing(const char* integrator) {
+Case packing(Integrator integrator) {
   Case c;
-  c.experiment = {.loading = "compaction", .model = "mpm"};
+  c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::mpm};
   c.mpm.cells = 3;
   c.mpm.integrator = integrator;
   c.contact.friction = 0.3;
@@ -40,7 +40,7 @@ Case packing(const char* integrator) {
 }  // namespace
 
 TEST_CASE("the contacts of a scene of elastic grains carry the forces that their outlines and the lid feel") {
-  for (const char* integrator : {"implicit", "explicit"}) {
+  for (const Integrator integrator : {Integrator::backward_euler, Integrator::symplectic_euler}) {
     CAPTURE(integrator);
     const auto simulation = create_simulation(packing(integrator));
     for (auto left = 4 * simulation->steps_planned() / 5; left > 0; --left) simulation->step();
@@ -96,10 +96,10 @@ TEST_CASE("the contacts of a scene of elastic grains carry the forces that their
 }
 
 TEST_CASE("one elastic grain between plates has contacts with walls 1 and 2, in both formulations") {
-  for (const char* formulation : {"total_lagrangian", "updated_lagrangian"}) {
+  for (const Formulation formulation : {Formulation::total_lagrangian, Formulation::updated_lagrangian}) {
     CAPTURE(formulation);
     Case c;
-    c.experiment = {.loading = "diametral", .model = "mpm"};
+    c.experiment = {.loading = LoadingPath::diametral, .model = GrainModel::mpm};
     c.grain.radius = 1e-3;
     c.mpm.cells = 4;
     c.mpm.formulation = formulation;

@@ -17,7 +17,7 @@ constexpr double side = 20e-3, v = 2, dt = 0.1e-6, target = 1e6;
 const std::vector<Wall<2>> box{
     {{0, 0}, {0, 1}, {}}, {{0, side}, {0, -1}, {}}, {{0, 0}, {1, 0}, {}}, {{side, 0}, {-1, 0}, {}}};
 
-WallDrive drive_of(const Case::Loading& loading, const char* path = "compaction") {
+WallDrive drive_of(const Case::Loading& loading, LoadingPath path = LoadingPath::compaction) {
   Case c;
   c.experiment.loading = path;
   c.loading = loading;
@@ -43,7 +43,7 @@ struct Spring {
 
 TEST_CASE("all four walls come in at half the speed, and the lid alone at the whole") {
   const Case::Loading loading{.wall_velocity = v, .max_strain = 0.2, .unload_at = {}};
-  const WallDrive isotropic = drive_of(loading, "isotropic"), compaction = drive_of(loading);
+  const WallDrive isotropic = drive_of(loading, LoadingPath::isotropic), compaction = drive_of(loading);
   CHECK(compaction.approach_speed(0, 0) == v);
   const Vec<2> half[] = {{0, v / 2}, {0, -v / 2}, {v / 2, 0}, {-v / 2, 0}}, lid[] = {{}, {0, -v}, {}, {}};
   for (int w = 0; w < 4; ++w) {

@@ -32,7 +32,7 @@ TEST_CASE("an empty case is the default case") {
   const Case read = parse_case("", "case.toml");
   CHECK(read.grain.radius == 5e-3);
   CHECK(read.bpm.primaries == 1750);
-  CHECK(read.experiment.model == "bpm");
+  CHECK(read.experiment.model == GrainModel::bpm);
 }
 
 TEST_CASE("a case is read in SI, quantities and plain numbers alike") {
@@ -178,7 +178,7 @@ TEST_CASE("--set goes the same way as the file, comes after it, and is named in 
   CHECK(read.loading.unload_at == std::vector{0.2});
   CHECK(read.bpm.primaries == 300);
   CHECK(read.sample.seed == 2);
-  CHECK(read.contact.activation == "closed_at_mid_step");
+  CHECK(read.contact.activation == Activation::closed_at_mid_step);
   CHECK(read.grain.radius == 4e-3);
   CHECK_FALSE(read.output.vtk);
   CHECK(

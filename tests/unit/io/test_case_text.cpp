@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "softgrain/io/case_file.hpp"
+#include "softgrain/io/case_relations.hpp"
 #include "softgrain/io/case_text.hpp"
 #include "softgrain/io/schema.hpp"
 #include "support/temporary_directory.hpp"
@@ -16,6 +17,7 @@ using namespace softgrain;
 
 namespace {
 
+std::string_view bits(std::string_view word) { return word; }
 std::vector<std::uint64_t> bits(double value) { return {std::bit_cast<std::uint64_t>(value)}; }
 std::vector<std::uint64_t> bits(const std::vector<double>& values) {
   std::vector<std::uint64_t> all;
@@ -40,7 +42,7 @@ Case unusual_case() {
   c.bpm.primaries = 301;
   c.contact.friction = -0.0;
   c.contact.wall_friction = 5e-324;
-  c.contact.activation = "closed_at_mid_step";
+  c.contact.activation = Activation::closed_at_mid_step;
   c.contact.push_out = std::nextafter(0.1, 1);
   c.loading.unload_at = {0.1 * 3, 1.0 / 3};
   c.time.step = 0.7e-6;

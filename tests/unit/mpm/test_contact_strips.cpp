@@ -15,7 +15,7 @@ namespace {
 
 /// Square lattice of disks that touch, on a floor; all vertices are moved, and move, at random.
 struct Packing {
-  Packing() : grains(placed_grains(), make_law("neo_hookean", 1, 0.3), 1) {
+  Packing() : grains(placed_grains(), make_law(MaterialLaw::neo_hookean, 1, 0.3), 1) {
     grains.gather_outline(outline.position);
     test::RandomNumbers random(5);
     for (Vec<2>& x : outline.position) x += random.vector<2>(0.01);

@@ -22,7 +22,7 @@ constexpr double dt = 0.1;
 struct Scenery {
   Scenery()
       : grains({test::placed(test::disk(2), 1, {0, 0}), test::placed(test::disk(3), 1.1, {2.05, 0})},
-               make_law("neo_hookean", 100, 0.3), 3) {
+               make_law(MaterialLaw::neo_hookean, 100, 0.3), 3) {
     test::shake(grains, 0.02);
     grains.gather_outline(outline.position);
     outline.start = outline.position;
@@ -155,7 +155,7 @@ TEST_CASE("a sweep of elastic contacts has the same bits on any number of thread
   const auto shape = test::disk(2);
   for (int g = 0; g < 240; ++g)
     placed.push_back(test::placed(shape, 1, {1.97 * (g % 20), 1.97 * (g / 20)}, {}, 0.3 * g));
-  const SoftGrains grains(placed, make_law("neo_hookean", 100, 0.3), 3);
+  const SoftGrains grains(placed, make_law(MaterialLaw::neo_hookean, 100, 0.3), 3);
   OutlineState outline;
   grains.gather_outline(outline.position);
   outline.start = outline.position;

@@ -15,7 +15,9 @@ namespace {
 constexpr double zeta = 2e4, rho = 1000;
 
 SoftGrains moving_grain(const Vec<2>& velocity) {
-  return {{test::placed(test::disk(3), 1e-3, {0, 0}, velocity)}, make_law("neo_hookean", 1e7, 0.3), rho};
+  return {{test::placed(test::disk(3), 1e-3, {0, 0}, velocity)},
+          make_law(MaterialLaw::neo_hookean, 1e7, 0.3),
+          rho};
 }
 
 /// Kinetic and elastic energy, and what of the work is not accounted for.
@@ -47,8 +49,8 @@ TEST_CASE("a free damped grain slows down as exp(-zeta t), in both integrators a
   }
   PointGrain grain = disk_of_points(1e-3, {}, 2e-4, 24);
   for (Vec<2>& v_p : grain.velocity) v_p = v;
-  UpdatedLagrangianDynamics lagrangian({std::move(grain)}, {}, make_law("neo_hookean", 1e7, 0.3), rho,
-                                       {.cell = 2e-4, .damping = zeta});
+  UpdatedLagrangianDynamics lagrangian({std::move(grain)}, {}, make_law(MaterialLaw::neo_hookean, 1e7, 0.3),
+                                       rho, {.cell = 2e-4, .damping = zeta});
   for (int k = 0; k < 1000; ++k) lagrangian.step(time / 1000);
   for (const Vec<2>& v_p : lagrangian.grains[0].velocity) CHECK(norm(v_p - expected * v) < 1e-9);
 }
@@ -78,7 +80,7 @@ TEST_CASE("the work of two damped grains that collide is accounted for, and they
   const auto pair = [] {
     return SoftGrains({test::placed(test::disk(3), 1e-3, {0, 0}, {2, 0}),
                        test::placed(test::disk(3), 1e-3, {2.05e-3, 0}, {-2, 0})},
-                      make_law("neo_hookean", 1e7, 0.3), rho);
+                      make_law(MaterialLaw::neo_hookean, 1e7, 0.3), rho);
   };
   const auto rebound = [&](auto dynamics, double dt) {
     const double start = dynamics.grains.kinetic_energy();

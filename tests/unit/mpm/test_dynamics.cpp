@@ -17,7 +17,7 @@ namespace {
 SoftGrains colliding_pair() {
   return {{test::placed(test::disk(3), 1e-3, {0, 0}, {3, 1}),
            test::placed(test::disk(4), 1.4e-3, {2.42e-3, 0}, {-2, 0.5})},
-          make_law("neo_hookean", 1e7, 0.3),
+          make_law(MaterialLaw::neo_hookean, 1e7, 0.3),
           1000};
 }
 
@@ -66,7 +66,7 @@ TEST_CASE("one, two and three threads give the same bits") {
     placed.push_back(test::placed(test::disk(g % 3 == 0 ? 3 : 4), 1e-3,
                                   {2.05e-3 * (g % 9), 1.02e-3 + 2.05e-3 * (g / 9)},
                                   {0.1 * g, -1 - 2.0 * (g / 9)}));
-  const SoftGrains grains(placed, make_law("neo_hookean", 1e6, 0.3), 1000);
+  const SoftGrains grains(placed, make_law(MaterialLaw::neo_hookean, 1e6, 0.3), 1000);
   const double dt = stable_time_step(grains);
   const auto outline_after = [](auto dynamics, double step, int steps, int thread_count) {
     set_threads(thread_count);
@@ -89,7 +89,8 @@ TEST_CASE("one, two and three threads give the same bits") {
 }
 
 TEST_CASE("a free grain falls: backward Euler and symplectic Euler give v = g t") {
-  const SoftGrains grains({test::placed(test::disk(2), 1e-3, {0, 0})}, make_law("hencky", 1e6, 0.3), 1000);
+  const SoftGrains grains({test::placed(test::disk(2), 1e-3, {0, 0})},
+                          make_law(MaterialLaw::hencky, 1e6, 0.3), 1000);
   ImplicitDynamics implicit(grains, {}, {.gravity = {1, -9.81}});
   ExplicitDynamics explicit_(grains, {}, {.gravity = {1, -9.81}});
   for (int k = 0; k < 10; ++k) implicit.step(1e-3);
@@ -114,7 +115,7 @@ TEST_CASE("the walls take the momentum that a grain loses") {
     CHECK(norm(start - dynamics.grains.momentum() - taken) < 1e-11 * norm(start));
   };
   const SoftGrains grains({test::placed(test::disk(4), 1e-3, {0, 1.003e-3}, {1, -2})},
-                          make_law("neo_hookean", 1e7, 0.3), 1000);
+                          make_law(MaterialLaw::neo_hookean, 1e7, 0.3), 1000);
   const double dt = stable_time_step(grains);
   check(ImplicitDynamics(grains, {test::floor_at(0)}, {.wall_friction = 0.3}), 1e-6, 60);
   check(ExplicitDynamics(grains, {test::floor_at(0)}, {.wall_friction = 0.3}), dt,
@@ -138,7 +139,7 @@ TEST_CASE(
     CHECK(elastic == doctest::Approx(w.internal).epsilon(0.1));
   };
   const SoftGrains grains({test::placed(test::disk(4), 1e-3, {0, 1.014e-3}, {0.5, 0})},
-                          make_law("neo_hookean", 1e6, 0.3), 1000);
+                          make_law(MaterialLaw::neo_hookean, 1e6, 0.3), 1000);
   const std::vector<Wall<2>> plates{test::floor_at(0),
                                     {.point = {0, 2.028e-3}, .normal = {0, -1}, .velocity = {0, -1}}};
   const double dt = stable_time_step(grains);
@@ -151,7 +152,7 @@ TEST_CASE(
 
 TEST_CASE("a step that is too long for Newton's method is halved, and the walls end where it should") {
   const SoftGrains grains({test::placed(test::disk(4), 1e-3, {0, 1.02e-3})},
-                          make_law("neo_hookean", 1e7, 0.3), 1000);
+                          make_law(MaterialLaw::neo_hookean, 1e7, 0.3), 1000);
   ImplicitDynamics dynamics(
       grains, {test::floor_at(0), {.point = {0, 2.04e-3}, .normal = {0, -1}, .velocity = {0, -1}}}, {});
   const SoftStepReport report = dynamics.step(1.2e-3);
@@ -162,8 +163,8 @@ TEST_CASE("a step that is too long for Newton's method is halved, and the walls 
 }
 
 TEST_CASE("factors in single precision cost no iterations and no accuracy up to their longest step") {
-  const SoftGrains grains({test::placed(test::disk(6), 1e-3, {0, 1e-3})}, make_law("neo_hookean", 1e7, 0.45),
-                          1000);
+  const SoftGrains grains({test::placed(test::disk(6), 1e-3, {0, 1e-3})},
+                          make_law(MaterialLaw::neo_hookean, 1e7, 0.45), 1000);
   ImplicitOptions options{.tolerance = 1e-5};
   const double dt = 0.99 * options.single_precision_steps * stable_time_step(grains, 1);
   const std::vector<Wall<2>> plates{test::floor_at(0),
@@ -183,8 +184,8 @@ TEST_CASE("factors in single precision cost no iterations and no accuracy up to 
 }
 
 TEST_CASE("a step that no halving saves ends with a NumericalError that names the grain") {
-  const SoftGrains grains({test::placed(test::disk(2), 1e-3, {0, 0})}, make_law("neo_hookean", 1e6, 0.3),
-                          1000);
+  const SoftGrains grains({test::placed(test::disk(2), 1e-3, {0, 0})},
+                          make_law(MaterialLaw::neo_hookean, 1e6, 0.3), 1000);
   std::vector<Wall<2>> plates{test::floor_at(-0.5e-3),
                               {.point = {0, -0.6e-3}, .normal = {0, -1}, .velocity = {}}};
   ImplicitDynamics dynamics(grains, plates, {});
@@ -192,7 +193,7 @@ TEST_CASE("a step that no halving saves ends with a NumericalError that names th
 }
 
 TEST_CASE("dynamics without grains or with negative friction is refused") {
-  const SoftGrains none({}, make_law("hencky", 1, 0.3), 1);
+  const SoftGrains none({}, make_law(MaterialLaw::hencky, 1, 0.3), 1);
   CHECK_THROWS_AS(ImplicitDynamics(none, {}, {}), UsageError);
   CHECK_THROWS_AS(ExplicitDynamics(none, {}, {}), UsageError);
   CHECK_THROWS_AS(ImplicitDynamics(colliding_pair(), {}, {.friction = -0.1}), UsageError);
@@ -201,8 +202,8 @@ TEST_CASE("dynamics without grains or with negative friction is refused") {
 
 TEST_CASE(
     "a grain that plates press hard needs three iterations a step, the term on its outline notwithstanding") {
-  const SoftGrains grains({test::placed(test::disk(6), 1e-3, {0, 1e-3})}, make_law("neo_hookean", 1e7, 0.3),
-                          1000);
+  const SoftGrains grains({test::placed(test::disk(6), 1e-3, {0, 1e-3})},
+                          make_law(MaterialLaw::neo_hookean, 1e7, 0.3), 1000);
   const double dt = 40 * stable_time_step(grains, 1);
   ImplicitDynamics dynamics(
       grains, {test::floor_at(0), {.point = {0, 2e-3}, .normal = {0, -1}, .velocity = {0, -0.02e-3 / dt}}},

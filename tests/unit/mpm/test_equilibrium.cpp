@@ -14,7 +14,7 @@ using namespace softgrain;
 namespace {
 
 /// Ten grains of different radii and angles on a coarse grid: two batches, the second with empty lanes.
-SoftGrains ten_grains(std::string_view law, double nu = 0.3) {
+SoftGrains ten_grains(MaterialLaw law, double nu = 0.3) {
   const auto shape = test::disk(2);
   std::vector<GrainPlacement> grains;
   for (int g = 0; g < 10; ++g) grains.push_back(test::placed(shape, 1 + 0.1 * g, {3.0 * g, 1}, {}, 0.4 * g));
@@ -36,7 +36,7 @@ double largest(const Vec<2, Wide>& v) {
 TEST_CASE("internal force is the derivative of the elastic energy") {
   for (const LawChoice& choice : law_choices()) {
     CAPTURE(choice.name);
-    SoftGrains grains = ten_grains(choice.name);
+    SoftGrains grains = ten_grains(choice.law);
     test::shake(grains, 0.05);
     test::move_nodes(grains, [](int lane, const Vec<2>& x) {  // J from 0.5 to 2 in the last lanes
       return Vec<2>{x[0], (lane < 5 ? 1 : lane == 5 ? 2 : lane == 6 ? 0.5 : 0.8) * x[1]};
@@ -66,7 +66,7 @@ TEST_CASE("internal force is the derivative of the elastic energy") {
 TEST_CASE("the stiffness in the Cholesky factor is the derivative of the internal force") {
   for (const LawChoice& choice : law_choices()) {
     CAPTURE(choice.name);
-    SoftGrains grains = ten_grains(choice.name);
+    SoftGrains grains = ten_grains(choice.law);
     test::shake(grains, 0.05);
     GrainBatch& batch = grains.batches[0];
     BatchedCholesky matrix(batch.topology->pattern);
@@ -107,7 +107,7 @@ TEST_CASE("the stiffness in the Cholesky factor is the derivative of the interna
 TEST_CASE("a grain turned and moved as a rigid body feels no force and has no energy") {
   for (const LawChoice& choice : law_choices()) {
     CAPTURE(choice.name);
-    SoftGrains grains = ten_grains(choice.name);
+    SoftGrains grains = ten_grains(choice.law);
     if (!objective(grains.law)) continue;
     test::move_nodes(grains, [](int lane, const Vec<2>& x) {
       const double c = std::cos(0.7 * lane), s = std::sin(0.7 * lane);
@@ -126,7 +126,7 @@ TEST_CASE("a grain turned and moved as a rigid body feels no force and has no en
 TEST_CASE("internal forces sum to zero, and so do their moments about any point") {
   for (const LawChoice& choice : law_choices()) {
     CAPTURE(choice.name);
-    SoftGrains grains = ten_grains(choice.name);
+    SoftGrains grains = ten_grains(choice.law);
     test::shake(grains, 0.05);
     const GrainBatch& batch = grains.batches[0];
     WideVectors force;
@@ -144,7 +144,7 @@ TEST_CASE("internal forces sum to zero, and so do their moments about any point"
 }
 
 TEST_CASE("the smallest J of a grain is that of its most squeezed point") {
-  SoftGrains grains = ten_grains("neo_hookean");
+  SoftGrains grains = ten_grains(MaterialLaw::neo_hookean);
   test::shake(grains, 0.1);
   for (int g = 0; g < grains.size(); ++g) {
     double least = 1e9;
@@ -162,7 +162,7 @@ TEST_CASE("patch test: one F everywhere gives one stress everywhere, and forces 
   for (const LawChoice& choice : law_choices()) {
     CAPTURE(choice.name);
     const auto shape = test::disk(3);
-    SoftGrains grains({test::placed(shape, 2, {0, 0})}, make_law(choice.name, 1, 0.3), 1);
+    SoftGrains grains({test::placed(shape, 2, {0, 0})}, make_law(choice.law, 1, 0.3), 1);
     test::move_nodes(grains, [&](int, const Vec<2>& x) { return F * x; });
     const auto states = point_states(grains, 0);
     REQUIRE(states.size() == shape->points.size());
@@ -194,7 +194,7 @@ TEST_CASE("patch test: one F everywhere gives one stress everywhere, and forces 
 TEST_CASE("a grain turned inside out is named by its lane, whatever the law") {
   for (const LawChoice& choice : law_choices()) {
     CAPTURE(choice.name);
-    SoftGrains grains = ten_grains(choice.name);
+    SoftGrains grains = ten_grains(choice.law);
     GrainBatch& batch = grains.batches[0];
     for (Vec<2, Wide>& x : batch.position) x[1].set(3, -x[1][3]);  // the mirror image
     WideVectors force;
@@ -205,7 +205,7 @@ TEST_CASE("a grain turned inside out is named by its lane, whatever the law") {
 TEST_CASE("a grain is free of stress as it was placed, at any angle, whatever the law") {
   for (const LawChoice& choice : law_choices()) {
     CAPTURE(choice.name);
-    const SoftGrains grains = ten_grains(choice.name);
+    const SoftGrains grains = ten_grains(choice.law);
     for (const GrainBatch& batch : grains.batches) {
       const Wide energy = elastic_energy(grains, batch);
       for (int lane = 0; lane < Wide::size; ++lane) CHECK(std::abs(energy[lane]) < 1e-14);
@@ -221,7 +221,7 @@ TEST_CASE("a grain is free of stress as it was placed, at any angle, whatever th
 // theory, section 10, orientation: Hooke's energy of a pure rotation by phi is 2 (lambda + mu) (1 - cos
 // phi)^2 V
 TEST_CASE("small-strain Hooke takes a turn after placement for the strain cos(phi) - 1, and says how much") {
-  SoftGrains grains = ten_grains("small_strain_hooke");
+  SoftGrains grains = ten_grains(MaterialLaw::small_strain_hooke);
   const auto [lambda, mu] = lame(1, 0.3);
   test::move_nodes(grains, [](int, const Vec<2>& x) {
     return Vec<2>{std::cos(0.2) * x[0] - std::sin(0.2) * x[1], std::sin(0.2) * x[0] + std::cos(0.2) * x[1]};
@@ -244,7 +244,7 @@ TEST_CASE(
   for (const LawChoice& choice : law_choices()) {
     CAPTURE(choice.name);
     const auto energy = [&](double nu) {  // mu = 1
-      SoftGrains grains({test::placed(cell, 1, {0, 0})}, make_law(choice.name, 2 * (1 + nu), nu), 1);
+      SoftGrains grains({test::placed(cell, 1, {0, 0})}, make_law(choice.law, 2 * (1 + nu), nu), 1);
       for (int i = 0; i < 4; ++i)  // the hourglass
         grains.batches[0].position[i][0] += Wide(i % 2 == 0 ? 1e-3 : -1e-3);
       return elastic_energy(grains, grains.batches[0])[0];

@@ -92,7 +92,7 @@ TEST_CASE("on outlines with short and long segments and sharp bends, too, vertic
   int met = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     SoftGrains grains({test::placed(test::disk(4), 1, {0, 0}), test::placed(test::disk(4), 1, {2, 0.1})},
-                      make_law("neo_hookean", 1, 0.3), 1);
+                      make_law(MaterialLaw::neo_hookean, 1, 0.3), 1);
     test::shake(grains, 0.15, seed);  // a segment is 0.4 long
     const OutlineState state = state_of(grains);
     for (const OutlineContact& c : OutlineNeighbours().detect(grains, state)) {
@@ -112,7 +112,7 @@ TEST_CASE("the contacts of many grains are those of each pair of them") {
   for (int g = 0; g < 16; ++g)
     placed.push_back(test::placed(test::disk(6), 1, {1.97 * (g % 4), 1.97 * (g / 4)}, {}, 0.1 * g));
   const auto detect = [&](std::vector<GrainPlacement> some) {
-    const SoftGrains grains(std::move(some), make_law("neo_hookean", 1, 0.3), 1);
+    const SoftGrains grains(std::move(some), make_law(MaterialLaw::neo_hookean, 1, 0.3), 1);
     return OutlineNeighbours().detect(grains, state_of(grains));
   };
   using Pair = std::array<int, 2>;                      // the slave's and the master's grain
@@ -130,7 +130,7 @@ TEST_CASE("the contacts of many grains are those of each pair of them") {
 TEST_CASE("a grain that rolls round another finds the same contacts as a search from the beginning") {
   const std::vector<GrainPlacement> placed{test::placed(test::disk(3), 1, {0, 0}),
                                            test::placed(test::disk(5), 1, {1.99, 0})};
-  const SoftGrains grains(placed, make_law("hencky", 1, 0.3), 1);
+  const SoftGrains grains(placed, make_law(MaterialLaw::hencky, 1, 0.3), 1);
   OutlineNeighbours neighbours;
   const OutlineState state = state_of(grains);
   for (int step = 0; step < 20; ++step) {
@@ -197,7 +197,7 @@ TEST_CASE("the curve passes through its vertices and keeps its direction there")
 TEST_CASE("along a round grain contact does the work of its gap but for terms of third order in the slip") {
   const std::vector<GrainPlacement> placed{test::placed(test::disk(16), 1, {0, 0}),
                                            test::placed(test::disk(16), 1, {1.99, 0})};
-  const SoftGrains grains(placed, make_law("hencky", 1, 0.3), 1);
+  const SoftGrains grains(placed, make_law(MaterialLaw::hencky, 1, 0.3), 1);
   for (const double slip : {0.05, 0.1, 0.2}) {  // the second grain on a circle about the first one
     OutlineState state = state_of(grains);
     const Vec<2> shift = 1.99 * Vec<2>{std::cos(slip), std::sin(slip)} - placed[1].centre;
@@ -235,7 +235,7 @@ TEST_CASE("impulses are carried by vertex and by wall or master grain, not by pl
   const auto shape = test::disk(4);
   const SoftGrains grains(
       {test::placed(shape, 1, {0, 0}), test::placed(shape, 1, {2, 0}), test::placed(shape, 1, {4, 0})},
-      make_law("hencky", 1, 0.3), 1);
+      make_law(MaterialLaw::hencky, 1, 0.3), 1);
   const auto against = [](int vertex, int master) {
     return OutlineContact{.vertex = vertex, .master = {master, master, master, master}, .normal = {}};
   };

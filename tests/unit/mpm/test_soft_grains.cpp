@@ -17,7 +17,7 @@ SoftGrains mixed_grains() {
   std::vector<GrainPlacement> grains;
   for (int g = 0; g < 11; ++g)
     grains.push_back(test::placed(g % 3 == 1 ? square : disk, 1 + 0.25 * g, {10.0 * g, 2}, {0.5 * g, -1}));
-  return {std::move(grains), make_law("neo_hookean", 1, 0.3), 4};
+  return {std::move(grains), make_law(MaterialLaw::neo_hookean, 1, 0.3), 4};
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ TEST_CASE("values of outline vertices go to the nodes of their own grain") {
 
 TEST_CASE("grains without size or weight are refused") {
   const auto make = [](double radius, double density) {
-    SoftGrains({test::placed(test::disk(2), radius, {})}, make_law("hencky", 1, 0.3), density);
+    SoftGrains({test::placed(test::disk(2), radius, {})}, make_law(MaterialLaw::hencky, 1, 0.3), density);
   };
   CHECK_THROWS_AS(make(0, 1), UsageError);
   CHECK_THROWS_AS(make(1, 0), UsageError);

@@ -16,7 +16,7 @@ namespace {
 constexpr double cell = 0.1, rho = 2;
 constexpr ShapeFunction shapes[] = {ShapeFunction::bilinear, ShapeFunction::gimp, ShapeFunction::bspline};
 
-AnyLaw rubber() { return make_law("neo_hookean", 1, 0.3); }
+AnyLaw rubber() { return make_law(MaterialLaw::neo_hookean, 1, 0.3); }
 double stable() { return stable_time_step(rubber(), rho, cell); }
 
 PointGrain unit_disk(const Vec<2>& centre = {}) { return disk_of_points(1, centre, cell, 80); }

@@ -20,7 +20,8 @@ constexpr double pi = 3.141592653589793;
 TEST_CASE(
     "a wall at any angle is at the distance of the circle through the vertices, and pushes its centre") {
   for (const int cells : {2, 3, 4, 8, 16}) {
-    const SoftGrains grains({test::placed(test::disk(cells), 1, {0, 0})}, make_law("hencky", 1, 0.3), 1);
+    const SoftGrains grains({test::placed(test::disk(cells), 1, {0, 0})},
+                            make_law(MaterialLaw::hencky, 1, 0.3), 1);
     const double radius = norm(grains.node_position(0, grains.topology(0).grid.outline_begin));
     for (int k = 0; k < 50; ++k) {
       const double angle = 0.1 * k;
@@ -74,7 +75,8 @@ TEST_CASE(
 }
 
 TEST_CASE("a vertex alone meets a wall where the outline is straight or has a corner") {
-  const SoftGrains grains({test::placed(test::square(4), 1, {0, 0})}, make_law("hencky", 1, 0.3), 1);
+  const SoftGrains grains({test::placed(test::square(4), 1, {0, 0})}, make_law(MaterialLaw::hencky, 1, 0.3),
+                          1);
   const OutlineState state = state_of(grains, {test::floor_at(-0.5)});
   int on_wall = 0;
   for (const OutlineContact& c : OutlineNeighbours().detect(grains, state)) {
@@ -85,7 +87,7 @@ TEST_CASE("a vertex alone meets a wall where the outline is straight or has a co
 }
 
 TEST_CASE("vertices meet walls by the distance of their arcs, and slip by their path less the wall's") {
-  const SoftGrains grains({test::placed(test::disk(4), 1, {0, 0})}, make_law("hencky", 1, 0.3), 1);
+  const SoftGrains grains({test::placed(test::disk(4), 1, {0, 0})}, make_law(MaterialLaw::hencky, 1, 0.3), 1);
   Wall<2> wall = test::floor_at(-0.95);
   wall.velocity = {0.01, 0};
   OutlineState state = state_of(grains, {wall});

@@ -1,0 +1,118 @@
+#include "softgrain/io/case_relations.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "softgrain/experiment/bpm_step.hpp"
+#include "softgrain/experiment/estimate.hpp"
+#include "softgrain/experiment/words.hpp"
+
+namespace softgrain {
+namespace {
+
+std::string unloading_not_ascending(const Case& c) {
+  const auto& strains = c.loading.unload_at;
+  const auto turn = std::adjacent_find(strains.begin(), strains.end(), std::greater_equal<>{});
+  if (turn == strains.end()) return "";
+  return fmt::format("loading.unload_at must be ascending: {} stands before {}", *turn, *(turn + 1));
+}
+
+std::string unloading_after_the_end(const Case& c) {
+  const auto& strains = c.loading.unload_at;
+  const auto late =
+      std::find_if(strains.begin(), strains.end(), [&](double eps) { return eps >= c.loading.max_strain; });
+  if (late == strains.end()) return "";
+  return fmt::format("loading.unload_at must be below loading.max_strain: {} is not below {}", *late,
+                     c.loading.max_strain);
+}
+
+std::string unloading_below_zero(const Case& c) {
+  const auto& strains = c.loading.unload_at;
+  if (strains.empty() || c.loading.unload_by < strains.front()) return "";
+  return fmt::format("loading.unload_by must be below the first of loading.unload_at: {} is not below {}",
+                     c.loading.unload_by, strains.front());
+}
+
+std::string sweeps_reversed(const Case& c) {
+  if (c.solver.min_sweeps <= c.solver.max_sweeps) return "";
+  return fmt::format("solver.min_sweeps must not be above solver.max_sweeps: {} is above {}",
+                     c.solver.min_sweeps, c.solver.max_sweeps);
+}
+
+std::string restitution_anticipated(const Case& c) {
+  if (c.experiment.model != GrainModel::bpm || c.contact.restitution == 0 ||
+      c.contact.activation != Activation::anticipated)
+    return "";
+  return fmt::format(
+      "contact.restitution {} needs contact.activation \"closed_at_mid_step\" or \"closed_at_end_of_step\": "
+      "anticipated contacts stop the particles before they touch",
+      c.contact.restitution);
+}
+
+std::string diameters_reversed(const Case& c) {
+  if (c.sample.smallest_diameter <= c.sample.largest_diameter) return "";
+  return fmt::format("sample.smallest_diameter must not be above sample.largest_diameter: {} m is above {} m",
+                     c.sample.smallest_diameter, c.sample.largest_diameter);
+}
+
+std::string too_many_steps(const Case& c) {
+  constexpr double most = 1e12;
+  const double steps = estimate(c).steps;
+  if (steps <= most) return "";
+  return fmt::format("about {:.1g} time steps are too many: raise the time step or loading.wall_velocity",
+                     steps);
+}
+
+std::string too_dense_from_the_start(const Case& c) {
+  const double last = c.loading.max_packing_fraction;
+  if (c.experiment.loading == LoadingPath::diametral || last == 0 || last > c.sample.packing_fraction)
+    return "";
+  return fmt::format("loading.max_packing_fraction must be above sample.packing_fraction: {} is not above {}",
+                     last, c.sample.packing_fraction);
+}
+
+std::string cannot_hold_a_stress(const Case& c) {
+  if (c.loading.hold_stress == 0) return "";
+  if (c.experiment.loading == LoadingPath::diametral)
+    return "loading.hold_stress needs a box: experiment.loading \"compaction\" or \"isotropic\"";
+  return c.loading.hold > 0 ? "" : "loading.hold_stress needs loading.hold > 0: for how long";
+}
+
+std::string formulation_cannot(const Case& c) {
+  const bool updated = c.mpm.formulation == Formulation::updated_lagrangian;
+  if (c.experiment.model != GrainModel::mpm) return "";
+  if (updated && c.experiment.loading != LoadingPath::diametral)
+    return fmt::format(
+        "mpm.formulation \"updated_lagrangian\" needs experiment.loading \"diametral\", not \"{}\"",
+        word_of(c.experiment.loading));
+  if (!updated && c.mpm.contact_on != ContactOn::outline)
+    return fmt::format("mpm.contact_on \"{}\" needs mpm.formulation \"updated_lagrangian\"",
+                       word_of(c.mpm.contact_on));
+  return "";
+}
+
+}  // namespace
+
+const std::vector<Relation>& case_relations() {
+  static const std::vector<Relation> relations{
+      {{"loading.unload_at"}, unloading_not_ascending},
+      {{"loading.unload_at", "loading.max_strain"}, unloading_after_the_end},
+      {{"loading.unload_by", "loading.unload_at"}, unloading_below_zero},
+      {{"solver.min_sweeps", "solver.max_sweeps"}, sweeps_reversed},
+      {{"sample.smallest_diameter", "sample.largest_diameter"}, diameters_reversed},
+      {{"time.step"}, bond_step_too_long},
+      {{"contact.restitution", "contact.activation"}, restitution_anticipated},
+      {{"time.step", "mpm.time_step", "loading.wall_velocity", "loading.max_strain", "grain.radius",
+        "grain.density", "bpm.attraction", "bpm.cohesive_pressure", "bpm.primaries", "bpm.size_ratio",
+        "bpm.exponent", "sample.smallest_diameter"},
+       too_many_steps},
+      {{"mpm.formulation", "mpm.contact_on", "experiment.loading"}, formulation_cannot},
+      {{"loading.max_packing_fraction", "sample.packing_fraction"}, too_dense_from_the_start},
+      {{"loading.hold_stress", "loading.hold", "experiment.loading"}, cannot_hold_a_stress},
+  };
+  return relations;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,7 @@
+#pragma once
+
+namespace softgrain {
+
+enum class Precision { full, single };  ///< double, float
+
+}  // namespace softgrain
