@@ -38,8 +38,9 @@ std::vector<double> rows(const Case& the_case) {
 
 /// Another valid value of the key, as text.
 std::string another_value(const Case& the_case, const Key& key) {
-  for (const std::string& word : key.allowed.words)
-    if (const std::string text = "'" + word + "'"; "\"" + word + "\"" != si_value(the_case, key)) return text;
+  if (const auto* enumerated = std::get_if<WordMember>(&key.member))
+    for (const std::string& word : enumerated->words())
+      if (word != enumerated->word(the_case)) return "'" + word + "'";
   for (const char* number : {"17", "3", "0.7", "0.03", "1", "2e-9", "[0.01]"}) {
     try {
       Case other = the_case;
