@@ -15,7 +15,7 @@ namespace {
 enum Stream : std::uint32_t { diameters, jitter, noise };
 constexpr std::uint64_t seed = 1;
 constexpr double size_ratio = 1.625;
-constexpr double skin = 0.15;  // of the mean diameter, as in BpmCompression
+constexpr double skin = 0.15;  // of the mean diameter, as of one bonded grain between walls
 
 double uniform_between(double low, double high, Stream stream, int index) {
   return low + (high - low) * random_uniform(seed, stream, index);

@@ -1,8 +1,8 @@
 // CPU time of the paper's grain: preparation, and the whole diametral compression to 35 % strain.
 #include <fmt/core.h>
 
+#include "bonded.hpp"
 #include "harness.hpp"
-#include "softgrain/experiment/bpm_compression.hpp"
 #include "softgrain/experiment/run.hpp"
 
 using namespace softgrain;
@@ -22,13 +22,13 @@ int main(int argc, char** argv) {
   results.heading(
       fmt::format("{} primaries to a strain of {}, once", paper.bpm.primaries, paper.loading.max_strain));
   const double start = cpu_seconds();
-  BpmCompression simulation(paper);
+  Simulation simulation = simulation_of(paper);
   const double prepared = cpu_seconds();
   results.add({.what = "preparation of the grain", .value = prepared - start, .unit = "s"});
   NoRecorder recorder;
   const RunReport report = run(simulation, recorder);
   const double run_seconds = cpu_seconds() - prepared;
-  const double updates = static_cast<double>(report.sweeps) * simulation.dynamics().contacts.size();
+  const double updates = static_cast<double>(report.sweeps) * bonded(simulation).contacts.size();
   results.add({.what = "compression",
                .value = run_seconds,
                .unit = "s",

@@ -6,9 +6,9 @@
 #include <chrono>
 #include <limits>
 
+#include "bonded.hpp"
 #include "harness.hpp"
 #include "softgrain/core/parallel.hpp"
-#include "softgrain/experiment/bpm_compaction.hpp"
 
 using namespace softgrain;
 using namespace softgrain::bench;
@@ -30,12 +30,12 @@ Case paper_packing() {
   return c;
 }
 
-void run_steps(BpmCompaction simulation) {
+void run_steps(Simulation simulation) {
   for (int k = 0; k < steps_timed; ++k) simulation.step();
 }
 
-void measure_parts(const BpmCompaction& simulation, const Case& c, Results& results) {
-  RigidDynamics<2> state = simulation.dynamics();
+void measure_parts(const Simulation& simulation, const Case& c, Results& results) {
+  RigidDynamics<2> state = bonded(simulation);
   AttractionForces attraction({.F0 = 100, .gamma = c.bpm.exponent});
   attraction.update(state.particles, state.reference);
   std::vector<Vec<2>> force(state.particles.position.size());
@@ -61,7 +61,7 @@ void measure_parts(const BpmCompaction& simulation, const Case& c, Results& resu
 }
 
 /// Smallest wall time [s] of the steps on one thread and on two, in turn.
-std::array<double, 2> wall_times(const BpmCompaction& simulation) {
+std::array<double, 2> wall_times(const Simulation& simulation) {
   std::array<double, 2> best;
   best.fill(std::numeric_limits<double>::infinity());
   for (int round = 0; round < 7; ++round)
@@ -81,9 +81,9 @@ std::array<double, 2> wall_times(const BpmCompaction& simulation) {
 int main(int argc, char** argv) {
   Results results("bpm_packing", argc, argv);
   const Case c = paper_packing();
-  BpmCompaction simulation(c);
+  Simulation simulation = simulation_of(c);
   for (int k = 0; k < steps_before; ++k) simulation.step();
-  const RigidDynamics<2>& state = simulation.dynamics();
+  const RigidDynamics<2>& state = bonded(simulation);
   results.heading(fmt::format("{} primaries, {} candidate contacts, {} sweeps a step", state.particles.size(),
                               state.contacts.size(), sweeps));
   measure_parts(simulation, c, results);

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "bonded.hpp"
 #include "harness.hpp"
-#include "softgrain/experiment/bpm_compression.hpp"
 
 using namespace softgrain;
 using namespace softgrain::bench;
@@ -25,11 +25,11 @@ Cost cost_of(int primaries) {
   paper.time.step = 0.25e-6 * std::sqrt(static_cast<double>(paper.bpm.primaries) / primaries);
   paper.bpm.primaries = primaries;
   const double start = cpu_seconds();
-  BpmCompression simulation(paper);
+  Simulation simulation = simulation_of(paper);
   Cost cost{.preparation = cpu_seconds() - start};
   for (int k = 0; k < steps_before; ++k) simulation.step();
   cost.step = fastest({[&] {
-                BpmCompression copy = simulation;
+                Simulation copy = simulation;
                 cost.sweeps = 0;
                 for (int k = 0; k < steps_measured; ++k) cost.sweeps += copy.step().sweeps;
               }})[0] /

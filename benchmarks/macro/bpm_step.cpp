@@ -1,9 +1,9 @@
 // Where the time of one step of the paper's grain goes, part by part, in the middle of the compression.
 #include <fmt/core.h>
 
+#include "bonded.hpp"
 #include "harness.hpp"
 #include "softgrain/bpm/attraction_forces.hpp"
-#include "softgrain/experiment/bpm_compression.hpp"
 #include "softgrain/rigid/contact_system.hpp"
 
 using namespace softgrain;
@@ -18,15 +18,15 @@ struct StepMeans {
   double sweeps = 0, rebuilds = 0, contacts = 0;
 };
 
-StepMeans run_steps(BpmCompression simulation) {
+StepMeans run_steps(Simulation simulation) {
   StepMeans mean;
-  const int generation = simulation.dynamics().reference.generation;
+  const int generation = bonded(simulation).reference.generation;
   for (int k = 0; k < steps_measured; ++k) {
     const StepReport report = simulation.step();
     mean.sweeps += report.sweeps;
     mean.contacts += report.contacts;
   }
-  mean.rebuilds = simulation.dynamics().reference.generation - generation;
+  mean.rebuilds = bonded(simulation).reference.generation - generation;
   for (double* sum : {&mean.sweeps, &mean.rebuilds, &mean.contacts}) *sum /= steps_measured;
   return mean;
 }
@@ -36,8 +36,8 @@ struct StepParts {
   double whole, attraction, detection, offsets, sweeps, stale, warm_start, velocities, rebuild;
 };
 
-StepParts time_parts(const BpmCompression& simulation, const Case& paper, const StepMeans& mean) {
-  RigidDynamics<2> state = simulation.dynamics();
+StepParts time_parts(const Simulation& simulation, const Case& paper, const StepMeans& mean) {
+  RigidDynamics<2> state = bonded(simulation);
   RigidParticles<2>& particles = state.particles;
   RigidContacts<2>& contacts = state.contacts;
   AttractionForces attraction({.F0 = paper.bpm.attraction, .gamma = paper.bpm.exponent});
@@ -60,7 +60,7 @@ StepParts time_parts(const BpmCompression& simulation, const Case& paper, const 
   int stale = 0;
   const auto seconds = fastest({
       [&] {
-        BpmCompression copy = simulation;
+        Simulation copy = simulation;
         for (int k = 0; k < steps_measured; ++k) copy.step();
       },
       repeated(calls, [&] { attraction.add_forces(particles, force); }),
@@ -95,11 +95,11 @@ int main(int argc, char** argv) {
   Results results("bpm_step", argc, argv);
   Case paper;
   paper.time.step = 0.25e-6;
-  BpmCompression simulation(paper);
+  Simulation simulation = simulation_of(paper);
   for (int k = 0; k < steps_before; ++k) simulation.step();
   const StepMeans mean = run_steps(simulation);
   const StepParts part = time_parts(simulation, paper, mean);
-  const int n = simulation.dynamics().particles.size(), m = simulation.dynamics().contacts.size();
+  const int n = bonded(simulation).particles.size(), m = bonded(simulation).contacts.size();
   results.heading(fmt::format(
       "{} primaries, {} candidates, {:.0f} carry impulse; {:.1f} sweeps and {:.4f} rebuilds per step", n, m,
       mean.contacts, mean.sweeps, mean.rebuilds));

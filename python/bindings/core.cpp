@@ -22,6 +22,7 @@
 #include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/run.hpp"
 #include "softgrain/io/case_file.hpp"
+#include "softgrain/observe/columns.hpp"
 
 namespace py = pybind11;
 
@@ -145,12 +146,13 @@ py::dict scene_parts(LiveSimulation& live) {
   return parts;
 }
 
-std::vector<std::tuple<std::string, std::string, double>> row_of(LiveSimulation& live) {
+std::vector<std::tuple<std::string, std::string, double>> next_row(LiveSimulation& live) {
   std::vector<std::tuple<std::string, std::string, double>> row;
   const Use use(live);
   const py::gil_scoped_release unlocked;
-  for (const Quantity& quantity : live.simulation->observe())
+  for (const Quantity& quantity : softgrain::row_of(live.simulation->observe()))
     row.emplace_back(quantity.name, quantity.unit, quantity.value);
+  live.simulation->begin_row();
   return row;
 }
 
@@ -223,7 +225,7 @@ PYBIND11_MODULE(_core, module) {
             advance(live, [&] { return live.simulation->strain() < until; });
           },
           py::arg("until"))
-      .def("row", &row_of)
+      .def("row", &next_row)
       .def("scene_parts", &scene_parts)
       .def("views", &views_of);
   say(type, "finished", &Simulation::finished);

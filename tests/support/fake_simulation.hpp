@@ -2,7 +2,9 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <csignal>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "softgrain/core/error.hpp"
@@ -10,31 +12,58 @@
 
 namespace softgrain::test {
 
-/// A ball that bounces on a floor, with everything that makes resuming hard: a mean since the last look, a
-/// force that depends on the step before, and irrational numbers. Its checkpoint is exact.
-class BouncingBall : public Simulation {
+/// A model without grains, to derive from.
+class FakeModel : public Model {
  public:
+  void visit(StateVisitor&) override {}
+  double density() const override { return 1; }
+  std::vector<double> radii() const override { return {}; }
+  std::vector<Vec<2>> centres() const override { return {}; }
+  Bodies bodies() const override { return {}; }
+  std::vector<ContactPoint> contacts() const override { return {}; }
+  Outlines outlines() const override { return {}; }
+  std::pair<double, double> extent() const override { return {0, 1}; }
+  Energies energies() const override { return {}; }
+  Numbers numbers(const Box<2>&) const override { return {}; }
+  Scene scene(const Box<2>&) const override { return {}; }
+  std::pair<double, double> reach() const override { return {-1, 1}; }
+  std::vector<GrainView> grains() const override { return {}; }
+};
+
+/// Between two walls that rest for so many steps of dt [s]; after `turn` of them, if any, the load turns.
+inline Simulation at_rest(std::unique_ptr<Model> model, int steps, double dt, int turn = 0) {
+  const Box<2> box({{.point = {0, 0}, .normal = {0, 1}, .velocity = {}},
+                    {.point = {0, 1}, .normal = {0, -1}, .velocity = {}}});
+  std::vector<Stage> stages;
+  if (turn > 0) stages.push_back({.duration = turn * dt});
+  stages.push_back({.duration = (steps - turn) * dt});
+  return {std::move(model), box, Loading(stages, {}, {}, 1), dt};
+}
+
+/// A ball that bounces on a floor, with everything that makes resuming hard: a mean since the last row, in the
+/// column width, a force that depends on the step before, and irrational numbers. Its state is exact.
+struct BouncingBall {
   int last_step = 400;
-  double progress_at_end = 1;  ///< what round-off or an early end makes of it
-  int turns_at = -1;           ///< step after which the load turns
-  int breaks_at = -1;          ///< step that raises NumericalError
-  useconds_t pause = 0;        ///< a step takes at least this long [us]
+  int turns_at = 0;                   ///< step after which the load turns; 0: none
+  int breaks_at = -1;                 ///< step that raises NumericalError
+  int signals_at = -1, signal = 0;    ///< before this step the process signals itself
+  useconds_t pause = 0;               ///< a step takes at least this long [us]
 
-  bool finished() const override { return step_ >= last_step; }
-  double progress() const override { return progress_at_end * static_cast<double>(step_) / last_step; }
-  double time() const override { return 0.005 * static_cast<double>(step_); }
-  double strain() const override { return 0; }
-  std::int64_t steps_done() const override { return step_; }
-  std::int64_t steps_planned() const override { return last_step; }
-  bool at_turning_point() const override { return step_ == turns_at; }
+  Simulation simulation() const;
+};
 
-  void follow(PlateMotion) override {}
-  StepReport step() override {
-    if (step_ == breaks_at) throw NumericalError("position of particle 0 is not finite");
-    if (pause > 0) usleep(pause);
+class BouncingBallModel final : public FakeModel {
+ public:
+  explicit BouncingBallModel(const BouncingBall& ball) : ball_(ball) {}
+  std::unique_ptr<Model> copy() const override { return std::make_unique<BouncingBallModel>(*this); }
+
+  StepReport step(Box<2>&, double dt) override {
+    if (step_ == ball_.breaks_at) throw NumericalError("position of particle 0 is not finite");
+    if (step_ == ball_.signals_at) std::raise(ball_.signal);
+    if (ball_.pause > 0) usleep(ball_.pause);
     ++step_;
-    velocity_ -= 0.005 * 9.81;
-    height_ += 0.005 * velocity_;
+    velocity_ -= dt * 9.81;
+    height_ += dt * velocity_;
     const bool hits = height_ < 0 && velocity_ < 0;
     if (hits) velocity_ *= -0.9;
     height_sum_ += height_;
@@ -49,46 +78,38 @@ class BouncingBall : public Simulation {
             .overlap_max = 1e-3 * std::fabs(height_),
             .converged = step_ % 50 != 0};
   }
-
-  std::vector<Quantity> observe() override {
-    const double mean = height_count_ > 0 ? height_sum_ / static_cast<double>(height_count_) : height_;
+  std::pair<double, double> extent() const override {
+    return {0, height_count_ > 0 ? height_sum_ / static_cast<double>(height_count_) : height_};
+  }
+  void begin_row() override {
     height_sum_ = 0;
     height_count_ = 0;
-    return {{"step", "", static_cast<double>(step_)}, {"time", "s", time()}, {"mean_height", "m", mean}};
   }
-
-  std::vector<GrainView> grains() const override { return {}; }
-  Scene scene() const override {
+  Scene scene(const Box<2>&) const override {
     Scene scene;
     scene.particles["position"] = {2, std::vector<double>{0, height_ + 0.1}};
     scene.particles["radius"] = {1, std::vector<double>{0.1}};
     scene.contacts["pair"] = {2, std::vector<std::int64_t>{}};
     scene.contacts["force"] = {1, std::vector<double>{}};
-    scene.wall_segments = {-1, 0, 1, 0};
     return scene;
   }
-
-  Checkpoint checkpoint() const override {
-    Checkpoint state{.step = step_, .time = time(), .arrays = {}};
-    state.arrays["ball"] = {2, std::vector<double>{height_, velocity_}};
-    state.arrays["height_sum"] = {1, std::vector<double>{height_sum_}};
-    state.arrays["height_count"] = {1, std::vector<std::int64_t>{height_count_}};
-    return state;
-  }
-
-  void restore(const Checkpoint& state) override {
-    step_ = state.step;
-    const auto& ball = std::get<std::vector<double>>(state.arrays.at("ball").values);
-    height_ = ball.at(0);
-    velocity_ = ball.at(1);
-    height_sum_ = std::get<std::vector<double>>(state.arrays.at("height_sum").values).at(0);
-    height_count_ = std::get<std::vector<std::int64_t>>(state.arrays.at("height_count").values).at(0);
+  void visit(StateVisitor& visit) override {
+    visit({"ball_height", "m", Owner::body, Role::state, ""}, height_);
+    visit({"ball_velocity", "m/s", Owner::body, Role::state, ""}, velocity_);
+    visit({"ball_height_sum", "m", Owner::body, Role::sum, ""}, height_sum_);
+    visit({"ball_height_count", "", Owner::body, Role::sum, ""}, height_count_);
+    visit({"ball_step", "", Owner::body, Role::state, ""}, step_);
   }
 
  private:
+  BouncingBall ball_;
   std::int64_t step_ = 0;
   double height_ = 1, velocity_ = 0, height_sum_ = 0;
   std::int64_t height_count_ = 0;
 };
+
+inline Simulation BouncingBall::simulation() const {
+  return at_rest(std::make_unique<BouncingBallModel>(*this), last_step, 0.005, turns_at);
+}
 
 }  // namespace softgrain::test

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include "support/simulations.hpp"
 
-#include "softgrain/experiment/bpm_compaction.hpp"
 
 using namespace softgrain;
 
@@ -25,12 +25,12 @@ Energy energy_of_free_grains(Activation activation, double e, double push_out, d
   c.sample.packing_fraction = 0.3;
   c.loading = {.wall_velocity = 0.5, .max_strain = 0.05};
   c.time.step = 0.2e-6;
-  BpmCompaction simulation(c);
+  Simulation simulation = test::simulation_of(c);
   Energy energy;
   double lowest = 0;
   for (int k = 0; k < 40; ++k) {
     std::map<std::string, double> row;
-    for (const Quantity& quantity : simulation.observe()) row[quantity.name] = quantity.value;
+    for (const Quantity& quantity : test::next_row(simulation)) row[quantity.name] = quantity.value;
     const double now = row["kinetic_energy"] + row["attraction_energy"];
     if (k == 0) energy.start = lowest = now;
     lowest = std::min(lowest, now);

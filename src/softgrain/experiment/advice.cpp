@@ -3,27 +3,26 @@
 #include <cmath>
 
 #include "softgrain/experiment/bpm_step.hpp"
-#include "softgrain/experiment/create.hpp"
+#include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/estimate.hpp"
 
 namespace softgrain {
 namespace {
 
-bool is_diametral(const Case& c) { return c.experiment.loading == LoadingPath::diametral; }
 
 /// <a0> of one grain [m]: primaries of equal size that fill pi R^2 at a packing fraction of 0.84.
 double mean_distance(const Case& c) { return 2 * c.grain.radius * std::sqrt(0.84 / c.bpm.primaries); }
 
 double stress_of(const Case& c) {
-  if (!is_diametral(c) && c.loading.hold_stress > 0) return c.loading.hold_stress;
-  if (!is_diametral(c) && c.loading.max_stress > 0) return c.loading.max_stress;
+  if (is_in_a_box(c) && c.loading.hold_stress > 0) return c.loading.hold_stress;
+  if (is_in_a_box(c) && c.loading.max_stress > 0) return c.loading.max_stress;
   if (c.experiment.model == GrainModel::mpm) return c.mpm.young_modulus;
-  return is_diametral(c) ? c.bpm.attraction / mean_distance(c) : c.bpm.cohesive_pressure;
+  return !is_in_a_box(c) ? c.bpm.attraction / mean_distance(c) : c.bpm.cohesive_pressure;
 }
 
 /// |d eps/dt| d at the start [m/s].
 double rate_times_diameter(const Case& c) {
-  if (is_diametral(c)) return c.loading.wall_velocity;  // v/(2 R) 2 R
+  if (!is_in_a_box(c)) return c.loading.wall_velocity;  // v/(2 R) 2 R
   const double diameter = (c.sample.smallest_diameter + c.sample.largest_diameter) / 2;
   return c.loading.wall_velocity / box_height(c) * diameter;
 }

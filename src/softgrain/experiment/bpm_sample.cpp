@@ -21,13 +21,6 @@ int choice_of(const Case& c, int grain, double radius) {
   return std::clamp(static_cast<int>(share * c.bpm.library), 0, c.bpm.library - 1);
 }
 
-std::vector<Wall<2>> box_walls(const BoxSample& box) {
-  return {{.point = {0, 0}, .normal = {0, 1}, .velocity = {}},
-          {.point = {0, box.height}, .normal = {0, -1}, .velocity = {}},
-          {.point = {0, 0}, .normal = {1, 0}, .velocity = {}},
-          {.point = {box.width, 0}, .normal = {-1, 0}, .velocity = {}}};
-}
-
 /// Moves grains as wholes out of the walls and out of each other once; returns the largest overlap met [m].
 double push_apart(RigidParticles<2>& particles, std::span<Vec<2>> shift, double widest) {
   double worst = 0;
@@ -116,7 +109,7 @@ BpmSample fill_box(const BoxSample& box, const std::vector<Aggregate>& library, 
   }
   sample.begin.push_back(static_cast<int>(position.size()));
   sample.particles =
-      rigid_particles<2>(std::move(position), std::move(radius), std::move(mass), box_walls(box));
+      rigid_particles<2>(std::move(position), std::move(radius), std::move(mass), walls_of(box).walls);
   sample.particles.grain = std::move(grain_of);
   sample.displaced = separate_grains(sample, box);
   return sample;

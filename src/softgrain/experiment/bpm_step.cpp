@@ -63,11 +63,10 @@ double bonded_time_step(const Case& c) {
   return step;
 }
 
-Case with_bonded_time_step(Case c) {
+double checked_bonded_time_step(const Case& c) {
   const std::string too_long = bond_step_too_long(c);
   require(too_long.empty(), "{}", too_long);
-  c.time.step = bonded_time_step(c);
-  return c;
+  return bonded_time_step(c);
 }
 
 std::string bond_step_too_long(const Case& c) {

@@ -23,8 +23,8 @@ double stable_bond_step(const Case& the_case);
 /// time.step, or the stable step where that is 0 [s]. Raises UsageError where the bonds have no period.
 double bonded_time_step(const Case& the_case);
 
-/// The case with that step. Raises UsageError for one that is too long.
-Case with_bonded_time_step(Case the_case);
+/// The same; raises UsageError for one that is too long, too.
+double checked_bonded_time_step(const Case& the_case);
 
 /// "time.step ... is longer than the critical ..." for a bonded case that gives such a step, else "".
 std::string bond_step_too_long(const Case& the_case);

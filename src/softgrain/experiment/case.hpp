@@ -112,4 +112,8 @@ struct Case {
   } output;
 };
 
+/// Grains in a box; else one grain between two walls.
+inline bool is_in_a_box(const Case& c) { return c.experiment.loading != LoadingPath::diametral; }
+inline bool is_isotropic(const Case& c) { return c.experiment.loading == LoadingPath::isotropic; }
+
 }  // namespace softgrain

@@ -4,6 +4,7 @@
 
 #include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/estimate.hpp"
+#include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/sample.hpp"
 
 namespace softgrain {
@@ -35,7 +36,7 @@ void check_case(const Case& c) {
     return;
   }
   create_simulation(twin_of(c));
-  if (c.experiment.loading != LoadingPath::diametral && c.sample.grains <= few_grains) sample_box(c);
+  if (is_in_a_box(c) && c.sample.grains <= few_grains) sample_box(c);
 }
 
 }  // namespace softgrain

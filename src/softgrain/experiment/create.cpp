@@ -1,16 +1,17 @@
 #include "softgrain/experiment/create.hpp"
 
-#include "softgrain/experiment/bpm_compaction.hpp"
-#include "softgrain/experiment/bpm_compression.hpp"
-#include "softgrain/experiment/mpm_simulation.hpp"
+#include "softgrain/experiment/grains_of_case.hpp"
 
 namespace softgrain {
 
-std::unique_ptr<Simulation> create_simulation(const Case& the_case) {
-  if (the_case.experiment.model == GrainModel::mpm) return create_mpm_simulation(the_case);
-  if (the_case.experiment.loading == LoadingPath::diametral)
-    return std::make_unique<BpmCompression>(the_case);
-  return std::make_unique<BpmCompaction>(the_case);
+std::unique_ptr<Simulation> create_simulation(const Case& c) {
+  check_loading(c);
+  PlacedModel placed =
+      c.experiment.model == GrainModel::mpm ? elastic_grains_of(c) : bonded_grains_of(c);
+  const double height = placed.box.height();
+  Loading loading(stages_of(c), strain_measure(c, height), ends_of(c), height);
+  return std::make_unique<Simulation>(std::move(placed.model), std::move(placed.box), std::move(loading),
+                                      placed.time_step);
 }
 
 }  // namespace softgrain

@@ -4,20 +4,18 @@
 #include <numbers>
 
 #include "softgrain/experiment/bpm_step.hpp"
-#include "softgrain/experiment/compaction_path.hpp"
-#include "softgrain/experiment/diametral_path.hpp"
+#include "softgrain/experiment/stage.hpp"
 
 namespace softgrain {
 namespace {
 
-bool is_diametral(const Case& c) { return c.experiment.loading == LoadingPath::diametral; }
 bool is_updated_lagrangian(const Case& c) { return c.mpm.formulation == Formulation::updated_lagrangian; }
 bool is_implicit(const Case& c) {
   return c.mpm.integrator == Integrator::backward_euler && !is_updated_lagrangian(c);
 }
-double grains(const Case& c) { return is_diametral(c) ? 1 : c.sample.grains; }
+double grains(const Case& c) { return !is_in_a_box(c) ? 1 : c.sample.grains; }
 double smallest_radius(const Case& c) {
-  return is_diametral(c) ? c.grain.radius : c.sample.smallest_diameter / 2;
+  return !is_in_a_box(c) ? c.grain.radius : c.sample.smallest_diameter / 2;
 }
 
 /// rho c^2 of pressure waves in elastic grains [Pa].
@@ -28,35 +26,28 @@ double wave_modulus(const Case& c) {
 
 /// Of all grains, undeformed, in the mean [m^2].
 double grain_area(const Case& c) {
-  if (is_diametral(c)) return std::numbers::pi * c.grain.radius * c.grain.radius;
+  if (!is_in_a_box(c)) return std::numbers::pi * c.grain.radius * c.grain.radius;
   const double a = c.sample.smallest_diameter, b = c.sample.largest_diameter;
   return c.sample.grains * std::numbers::pi / 12 * (a * a + a * b + b * b);
 }
 
-/// Travel of the plate, there and back [m].
-double travel(const Case& c) {
-  const double height = box_height(c);
-  const auto travel_to = [&](double strain) {
-    return is_diametral(c) ? plate_travel(strain, c.grain.radius) : -height * std::expm1(-strain);
-  };
-  const double last =
-      is_diametral(c) ? c.loading.max_strain
-                      : CompactionPath::last_strain(c.loading, c.sample.packing_fraction,
-                                                    c.experiment.loading == LoadingPath::isotropic ? 2 : 1);
-  double path = travel_to(last);
-  for (const double turn : c.loading.unload_at)
-    if (turn < last) path += 2 * (travel_to(turn) - travel_to(turn - c.loading.unload_by));
-  return path;
-}
-
-/// Time in which the plate rests [s].
-double rest(const Case& c) {
-  return c.loading.hold * (1 + 2 * static_cast<double>(c.loading.unload_at.size()));
+/// Of all stages [s].
+double loading_time(const Case& c) {
+  const StrainMeasure measure = strain_measure(c, box_height(c));
+  double time = 0, travel = 0;
+  for (const Stage& stage : stages_of(c)) {
+    time += stage.duration.value_or(0);
+    if (!stage.strain) continue;
+    const double to = measure.travel(*stage.strain);
+    time += std::abs((to - travel) / stage.speed);
+    travel = to;
+  }
+  return time;
 }
 
 /// Primaries of all grains.
 double primaries(const Case& c) {
-  if (is_diametral(c) || c.bpm.equal == EqualPrimaries::count) return grains(c) * c.bpm.primaries;
+  if (!is_in_a_box(c) || c.bpm.equal == EqualPrimaries::count) return grains(c) * c.bpm.primaries;
   // mean of (R / R_min)^2 over radii spread evenly
   const double ratio = c.sample.largest_diameter / c.sample.smallest_diameter;
   return grains(c) * c.bpm.primaries * (1 + ratio + ratio * ratio) / 3;
@@ -86,7 +77,7 @@ double wave_speed(const Case& c) { return std::sqrt(wave_modulus(c) / c.grain.de
 /// 20 grains took 0.33, 0.64, 2.3, 4.0 and 5.2 s at 5, 0.5, 0.1, 0.01 and 0.001 m/s, s = 0.4 to 2000; one
 /// grain between plates the same at any speed.
 double quasi_static_factor(const Case& c) {
-  if (is_diametral(c)) return 4;
+  if (!is_in_a_box(c)) return 4;
   const double s = first_time_step(c) * wave_speed(c) / smallest_radius(c);
   return 1 + 11 * s / (s + 43);
 }
@@ -106,7 +97,7 @@ double seconds_of_step(const Case& c, const Estimate& e) {
 /// CPU time of all rows of series.csv [s]: in a box each looks at every grain, whose outline must be found if
 /// it is bonded.
 double seconds_of_rows(const Case& c, const Estimate& e) {
-  if (is_diametral(c)) return 0;
+  if (!is_in_a_box(c)) return 0;
   return std::min<double>(c.output.samples, e.steps) * grains(c) *
          (c.experiment.model == GrainModel::bpm ? 75e-6 : 17e-6);
 }
@@ -147,8 +138,7 @@ Estimate estimate(const Case& the_case) {
   Estimate result;
   result.particles = bpm ? primaries(the_case) : grains(the_case) * 14 * cells * cells;
   result.contacts = bpm ? 2.2 * result.particles : grains(the_case) * 3.3 * cells;
-  result.steps = std::round((travel(the_case) / the_case.loading.wall_velocity + rest(the_case)) /
-                            first_time_step(the_case));
+  result.steps = std::round(loading_time(the_case) / first_time_step(the_case));
   result.memory = memory(the_case, result);
   result.disk = disk(the_case, result);
   result.hours =

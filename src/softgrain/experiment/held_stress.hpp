@@ -1,8 +1,9 @@
 #pragma once
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
+
+#include "softgrain/state/field.hpp"
 
 namespace softgrain {
 
@@ -10,27 +11,15 @@ namespace softgrain {
 /// of them, all over the stress that is asked for.
 struct HeldStress {
   double mean() const { return windows > 0 ? sum / windows : 0; }
-  /// Standard deviation.
-  double deviation() const {
-    return windows > 0 ? std::sqrt(std::max(0.0, squares / windows - mean() * mean())) : 0;
-  }
+  double deviation() const;  ///< standard
   /// Within 1 % in the mean, 3 % of standard deviation and 10 % at most.
   bool kept() const { return std::abs(mean() - 1) <= 0.01 && deviation() <= 0.03 && largest <= 1.1; }
   /// "1.002 of it in the mean, 0.013 of standard deviation, 1.05 at most".
   std::string text() const;
 
   /// Takes the stress over the one asked for of step k of the hold, of `steps` steps.
-  void add(double stress, std::int64_t step, std::int64_t steps) {
-    if (step < steps / 2) return;
-    const std::int64_t of_window = std::max<std::int64_t>(1, (steps - steps / 2) / 200);
-    window += stress / static_cast<double>(of_window);
-    if ((step - steps / 2 + 1) % of_window != 0) return;
-    ++windows;
-    sum += window;
-    squares += window * window;
-    largest = std::max(largest, window);
-    window = 0;
-  }
+  void add(double stress, std::int64_t step, std::int64_t steps);
+  void visit(StateVisitor& visit);
 
   double windows = 0, sum = 0, squares = 0, largest = 0;
   double window = 0;  ///< of the present one so far

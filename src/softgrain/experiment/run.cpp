@@ -23,15 +23,11 @@ double worse(double worst, double now) { return now <= worst || std::isnan(worst
 
 }  // namespace
 
-void EnergyBalance::add(const std::vector<Quantity>& row) {
-  for (const Quantity& quantity : row) {
-    const std::string& name = quantity.name;
-    if (name == "energy_error") error = worse(error, std::abs(quantity.value));
-    if (name == "dissipation") error = worse(error, -quantity.value);
-    if (name == "wall_work" || name == "kinetic_energy" || name == "elastic_energy" ||
-        name == "attraction_energy")
-      scale = std::max(scale, std::abs(quantity.value));
-  }
+void EnergyBalance::add(const Energies& energies) {
+  error = worse(error, std::abs(energies.error));
+  error = worse(error, -energies.dissipation);
+  for (const double energy : {energies.wall_work, energies.kinetic, energies.stored})
+    scale = std::max(scale, std::abs(energy));
 }
 
 void RunReport::add(const StepReport& step) {

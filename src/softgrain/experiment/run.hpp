@@ -11,7 +11,7 @@ struct EnergyBalance {
   /// row tells.
   double scale = 0;
 
-  void add(const std::vector<Quantity>& row);
+  void add(const Energies& energies);
   double imbalance() const { return scale > 0 ? error / scale : 0; }
 };
 

@@ -153,4 +153,16 @@ BoxSample sample_box(const Case& c) {
                      .seed = static_cast<std::uint64_t>(c.sample.seed)});
 }
 
+Box<2> walls_at(double low, double high) {
+  return Box<2>({{.point = {0, low}, .normal = {0, 1}, .velocity = {}},
+                 {.point = {0, high}, .normal = {0, -1}, .velocity = {}}});
+}
+
+Box<2> walls_of(const BoxSample& sample) {
+  return Box<2>({{.point = {0, 0}, .normal = {0, 1}, .velocity = {}},
+                 {.point = {0, sample.height}, .normal = {0, -1}, .velocity = {}},
+                 {.point = {0, 0}, .normal = {1, 0}, .velocity = {}},
+                 {.point = {sample.width, 0}, .normal = {-1, 0}, .velocity = {}}});
+}
+
 }  // namespace softgrain

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "softgrain/experiment/case.hpp"
+#include "softgrain/geometry/box.hpp"
 #include "softgrain/math/vec.hpp"
 
 namespace softgrain {
@@ -42,5 +43,9 @@ double largest_packing_fraction(const BoxSampleOptions& options);
 
 /// The sample of a case, the same for every model.
 BoxSample sample_box(const Case& the_case);
+
+/// The walls of a box with its corner at (0, 0); those below and above one grain [m].
+Box<2> walls_of(const BoxSample& sample);
+Box<2> walls_at(double low, double high);
 
 }  // namespace softgrain

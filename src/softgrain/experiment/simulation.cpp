@@ -1,14 +1,190 @@
 #include "softgrain/experiment/simulation.hpp"
 
-#include "softgrain/contact/contact_problem.hpp"
+#include <algorithm>
+
 #include "softgrain/core/error.hpp"
+#include "softgrain/experiment/speed_search.hpp"
+#include "softgrain/state/archive.hpp"
 
 namespace softgrain {
+namespace {
+
+/// Of a stress that is kept: so far from it the search for the speed of the walls ends.
+constexpr double stress_accuracy = 2e-3;
+
+}  // namespace
+
+Simulation::Simulation(std::unique_ptr<Model> model, Box<2> box, Loading loading, double dt)
+    : model_(std::move(model)),
+      box_(std::move(box)),
+      loading_(std::move(loading)),
+      dt_(dt),
+      steps_planned_(loading_.steps_planned(dt)) {
+  row_.impulse.assign(box_.walls.size(), 0);
+  if (box_.closed()) loading_.body = model_->wall_body(box_, dt_);
+}
+
+Simulation::Simulation(const Simulation& other)
+    : model_(other.model_->copy()),
+      box_(other.box_),
+      loading_(other.loading_),
+      dt_(other.dt_),
+      step_(other.step_),
+      steps_planned_(other.steps_planned_),
+      row_(other.row_) {}
+
+void Simulation::follow(WallMotion motion) {
+  loading_.follow(std::move(motion));
+  steps_planned_ = loading_.steps_planned(dt_);
+}
+
+StepReport Simulation::step() {
+  const bool over = finished();  // whoever goes on then has been told why
+  const double approach = loading_.approach_speed(box_, time(), dt_), limit = loading_.stress_limit();
+  const bool seeks = limit > 0 && loading_.body.mass == 0;
+  const StepReport report = seeks ? step_under(limit, approach) : step_at(approach);
+  ++step_;
+  for (std::size_t w = 0; w < box_.walls.size(); ++w) row_.impulse[w] += box_.outward_impulse(w);
+  row_.duration += dt_;
+  const double stress = box_.closed() ? vertical_stress() : 0;
+  loading_.after_step(box_, time(), dt_, stress, report.overlap_mean);
+  if (!over && model_->is_exhausted(report, box_)) loading_.end(Loading::End::exhausted);
+  return report;
+}
+
+StepReport Simulation::step_at(double approach_speed) {
+  loading_.drive(box_, approach_speed);
+  return model_->step(box_, dt_);
+}
+
+/// Of the last step: the mean of the bottom and the top wall [Pa].
+double Simulation::vertical_stress() const {
+  return (box_.outward_impulse(bottom_wall) + box_.outward_impulse(top_wall)) / (2 * dt_ * box_.width());
+}
+
+/// A step of walls that bear at most sigma_h. Before they hold it, they go their way unless they would bear
+/// more; then, and from there on, they go at the speed v, sought by trial and error, at which
+///   sigma(v) + Z v = sigma_h,  |v| <= loading.wall_velocity.
+StepReport Simulation::step_under(double sigma_h, double approach_speed) {
+  const std::unique_ptr<Model> start = model_->copy();
+  const Box<2> box_start = box_;
+  const double damper = loading_.body.damper;
+  StepReport report;
+  const auto excess_at = [&](double v) {
+    report = step_at(v);
+    return vertical_stress() + damper * v - sigma_h;
+  };
+  SpeedSearch search(loading_.largest_speed(), stress_accuracy * sigma_h, loading_.slope);
+  double v = approach_speed;
+  double excess = excess_at(v);
+  if (!loading_.holds() && excess < damper * v) return report;  // sigma < sigma_h
+  while (!search.found(v, excess)) {
+    v = search.next();
+    model_ = start->copy();
+    box_ = box_start;
+    excess = excess_at(v);
+  }
+  if (!loading_.holds()) loading_.begin_hold(time() + dt_, v);
+  loading_.speed = v;
+  loading_.slope = search.slope();
+  return report;
+}
 
 SolvedContactProblem Simulation::step_and_catch_problem() {
-  throw UsageError(
-      "this way of integrating solves no contact problem that could be written down; bonded grains and "
-      "implicit elastic ones (mpm.formulation = \"total_lagrangian\", mpm.integrator = \"implicit\") do");
+  model_->catch_problem();
+  step();
+  return model_->caught_problem(dt_);
+}
+
+std::string Simulation::early_end() const {
+  return loading_.ended() == Loading::End::exhausted ? model_->exhaustion(box_) : loading_.early_end();
+}
+
+LoadingOutcome Simulation::outcome() const {
+  if (loading_.ended() != Loading::End::exhausted) return loading_.outcome();
+  return {.completed = false,
+          .shortfall = fmt::format("the path ends at a strain of {:.4g}, before loading.max_strain {:.4g}: {}",
+                                   strain(), loading_.last_strain(), early_end())};
+}
+
+Observation Simulation::observe() const {
+  Observation now{.step = step_,
+                  .time = time(),
+                  .strain = strain(),
+                  .leg = loading_.number(),
+                  .height = box_.height(),
+                  .wall_force = row_.impulse,
+                  .packing = {},
+                  .energies = model_->energies(),
+                  .numbers = model_->numbers(box_),
+                  .means = {}};
+  for (double& force : now.wall_force) force /= row_.duration > 0 ? row_.duration : dt_;
+  if (box_.closed()) {
+    now.width = box_.width();
+    now.packing = packing();
+  } else {
+    const auto [low, high] = model_->extent();
+    now.width = high - low;
+  }
+  return now;
+}
+
+PackingMeasures Simulation::packing() const {
+  const std::vector<double> radius = model_->radii();
+  const std::vector<Vec<2>> centre = model_->centres();
+  const std::vector<ContactPoint> contacts = model_->contacts();
+  const Outlines outlines = model_->outlines();
+  const Bodies bodies = model_->bodies();
+  return measure_packing({.width = box_.width(),
+                          .height = box_.height(),
+                          .radius = radius,
+                          .grain_area = outlines.area,
+                          .centre = centre,
+                          .outline = outlines.vertex,
+                          .outline_begin = outlines.begin,
+                          .contacts = contacts,
+                          .mass = bodies.mass,
+                          .velocity = bodies.velocity,
+                          .density = model_->density(),
+                          .strain_rate = box_.strain_rate(1)});
+}
+
+void Simulation::begin_row() {
+  std::ranges::fill(row_.impulse, 0.0);
+  row_.duration = 0;
+  model_->begin_row();
+}
+
+Scene Simulation::scene() const {
+  Scene scene = model_->scene(box_);
+  const double low = box_.low(1).point[1], high = box_.high(1).point[1];
+  const auto [left, right] = box_.bounded(0) ? std::pair(box_.low(0).point[0], box_.high(0).point[0])
+                                             : model_->reach();
+  scene.wall_segments = {left, low, right, low, left, high, right, high};  // in the order of BoxWall
+  if (box_.bounded(0))
+    scene.wall_segments.insert(scene.wall_segments.end(), {left, low, left, high, right, low, right, high});
+  return scene;
+}
+
+void Simulation::visit(StateVisitor& visit) {
+  model_->visit(visit);
+  box_.visit(visit);
+  loading_.visit(visit);
+  visit({"row_impulse", "N s/m", Owner::wall, Role::sum, "outwards, since the last row"}, row_.impulse);
+  visit({"row_duration", "s", Owner::run, Role::sum, "since the last row"}, row_.duration);
+}
+
+Checkpoint Simulation::checkpoint() const {
+  StateWriter writer;
+  const_cast<Simulation*>(this)->visit(writer);  // a writer changes nothing
+  return {.step = step_, .time = time(), .arrays = std::move(writer.arrays)};
+}
+
+void Simulation::restore(const Checkpoint& checkpoint) {
+  StateReader reader(checkpoint.arrays);
+  visit(reader);
+  model_->go_on(box_);
+  step_ = checkpoint.step;
 }
 
 }  // namespace softgrain

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "softgrain/experiment/simulation.hpp"
+#include "softgrain/observe/columns.hpp"
 
 namespace softgrain {
 

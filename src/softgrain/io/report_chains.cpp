@@ -22,9 +22,9 @@ double distance_to_segment(const Vec<2>& x, const Vec<2>& p, const Vec<2>& q) {
 }
 
 /// Vertices of all outlines in square cells, to find the nearest outline.
-class Outlines {
+class OutlinePoints {
  public:
-  explicit Outlines(const Scene& scene)
+  explicit OutlinePoints(const Scene& scene)
       : position_(std::get<std::vector<double>>(scene.outlines.at("position").values)),
         force_(std::get<std::vector<double>>(scene.outlines.at("force").values)),
         grain_(std::get<std::vector<std::int64_t>>(scene.outlines.at("grain").values)),
@@ -83,7 +83,7 @@ class Outlines {
 std::vector<Chain> chains_between_outlines(const Scene& scene) {
   for (const char* name : {"position", "force", "grain"})
     if (!scene.outlines.contains(name)) return {};
-  const Outlines outlines(scene);
+  const OutlinePoints outlines(scene);
   // F_ab - F_ba, with F_ab the force of b on a, a < b
   std::map<std::pair<int, int>, Vec<2>> difference;
   std::map<std::pair<int, int>, int> sides;

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "softgrain/experiment/simulation.hpp"
+#include "softgrain/model/model.hpp"
 
 namespace softgrain {
 

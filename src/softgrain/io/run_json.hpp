@@ -23,7 +23,7 @@ struct RunRecord {
   double wall_seconds = 0;  ///< of all resumed parts together
   double cpu_seconds = 0;
   RunReport report;
-  PathOutcome path;  ///< of a run that is done
+  LoadingOutcome path;  ///< of a run that is done
 };
 
 /// The text of run.json: the record, its verdict, and what ran it (program, libraries, machine, threads,

@@ -9,6 +9,7 @@
 #include "softgrain/io/case_extension.hpp"
 #include "softgrain/io/case_file.hpp"
 #include "softgrain/io/verdict.hpp"
+#include "softgrain/observe/columns.hpp"
 
 namespace softgrain {
 
@@ -18,7 +19,8 @@ namespace {
 
 /// How many of `count` even shares of the run are over.
 int shares_done(const Simulation& simulation, int count) {
-  return static_cast<int>(std::floor(simulation.progress() * count));
+  constexpr double rounding = 1e-9;
+  return static_cast<int>(std::floor(simulation.progress() * count + rounding));
 }
 
 /// "s000123.h5", wide enough for the last step.
@@ -44,16 +46,15 @@ std::vector<Frame> frames_before(std::int64_t step, const RunPaths& paths) {
   return frames;
 }
 
-/// The columns that belong to the solver, not to the physics: means and maxima over the steps since the last
-/// row.
-std::vector<Quantity> solver_columns(const StepSums& sums, double wall_seconds) {
+/// Over the steps since the last row.
+StepMeans means_of(const StepSums& sums, double wall_seconds) {
   const double steps = static_cast<double>(std::max<std::int64_t>(sums.steps, 1));
-  return {{"sweeps", "", static_cast<double>(sums.sweeps) / steps},
-          {"residual_mean", "", sums.residual_mean / steps},
-          {"residual_max", "", sums.residual_max},
-          {"overlap_mean", "", sums.overlap_mean / steps},
-          {"overlap_max", "", sums.overlap_max},
-          {"wall_seconds", "s", wall_seconds}};
+  return {.sweeps = static_cast<double>(sums.sweeps) / steps,
+          .residual_mean = sums.residual_mean / steps,
+          .residual_max = sums.residual_max,
+          .overlap_mean = sums.overlap_mean / steps,
+          .overlap_max = sums.overlap_max,
+          .wall_seconds = wall_seconds};
 }
 
 }  // namespace
@@ -177,10 +178,11 @@ bool RunRecorder::after_step(Simulation& simulation, const StepReport& step, Run
 }
 
 void RunRecorder::write_row(Simulation& simulation) {
-  last_row_ = simulation.observe();
-  record_.report.energy.add(last_row_);
-  const auto solver = solver_columns(sums_, wall_seconds());
-  last_row_.insert(last_row_.end(), solver.begin(), solver.end());
+  Observation now = simulation.observe();
+  simulation.begin_row();
+  now.means = means_of(sums_, wall_seconds());
+  record_.report.energy.add(now.energies);
+  last_row_ = row_of(now);
   series_->write_row(last_row_);
   sums_ = {};
   rows_due_ = shares_done(simulation, request_.the_case.output.samples);

@@ -17,7 +17,6 @@ namespace scope {
 
 inline bool is_bpm(const Case& c) { return c.experiment.model == GrainModel::bpm; }
 inline bool is_mpm(const Case& c) { return c.experiment.model == GrainModel::mpm; }
-inline bool is_in_a_box(const Case& c) { return c.experiment.loading != LoadingPath::diametral; }
 inline bool is_updated_lagrangian(const Case& c) {
   return is_mpm(c) && c.mpm.formulation == Formulation::updated_lagrangian;
 }

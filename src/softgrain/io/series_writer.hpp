@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "softgrain/experiment/simulation.hpp"
+#include "softgrain/observe/columns.hpp"
 #include "softgrain/io/file.hpp"
 
 namespace softgrain {

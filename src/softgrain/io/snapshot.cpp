@@ -154,6 +154,16 @@ void check_format(const Hdf5Reader& file, const std::string& name) {
     throw IoError(fmt::format("{}: snapshot is not complete", name));
 }
 
+/// Raises std::bad_alloc here, where it is caught, if there is no room for what the HDF5 library will need: it
+/// may crash where it runs out of memory.
+void require_room(const Datasets& datasets) {
+  std::size_t numbers = 0;
+  for (const auto& [path, array] : datasets)
+    numbers += std::visit([](const auto& values) { return values.size(); }, array.values);
+  std::string room;
+  room.reserve(3 * sizeof(double) * numbers);  // its image, which doubles when it is full
+}
+
 }  // namespace
 
 void StepSums::add(const StepReport& step) {
@@ -167,6 +177,7 @@ void StepSums::add(const StepReport& step) {
 
 std::string encode_snapshot(const Snapshot& snapshot, const std::string& name) {
   const Datasets datasets = datasets_of(snapshot);
+  require_room(datasets);
   const BuildInfo build = build_info();
   Hdf5Writer file(name);
   file.write_attribute("format", format_name);

@@ -56,7 +56,7 @@ std::vector<std::string> doubts_of(const RunReport& report, const VerdictLimits&
 
 }  // namespace
 
-Verdict verdict_of(const RunReport& report, const PathOutcome& path, const VerdictLimits& limits) {
+Verdict verdict_of(const RunReport& report, const LoadingOutcome& path, const VerdictLimits& limits) {
   Verdict verdict;
   if (report.steps > 0) {
     verdict.words = facts(report);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "softgrain/experiment/simulation.hpp"
+#include "softgrain/model/model.hpp"
 
 namespace softgrain {
 

@@ -3,15 +3,17 @@
 
 namespace softgrain {
 
-/// Energies since the start of a run [J/m].
-struct EnergyBudget {
+/// Energies of grains, and work since the start of a run [J/m].
+struct Energies {
+  double kinetic = 0;
+  double stored = 0;       ///< elastic energy, or the potential of the attraction
   double wall_work = 0;    ///< done by the walls
-  double kinetic = 0;      ///< change of the kinetic energy
-  double stored = 0;       ///< change of the elastic energy, or of the potential of the attraction
-  double dissipation = 0;  ///< by contacts, friction and plastic flow, each counted on its own
-
-  /// What is missing in wall_work = kinetic + stored + dissipation [J/m]: the error of the time stepping.
-  double error() const { return wall_work - kinetic - stored - dissipation; }
+  double dissipation = 0;  ///< by contacts, friction, damping, rearrangement, and what time stepping took
+  double contact = 0;      ///< of `dissipation`: in contacts between grains and with walls
+  double friction = 0;     ///< of `contact`: by sliding
+  /// What is missing in wall_work = change of (kinetic + stored) + dissipation: how far the equations of
+  /// motion were not solved.
+  double error = 0;
 };
 
 /// Inertial number of a packing: I = strain_rate d sqrt(rho/p) (theory (63)), the time that a grain of

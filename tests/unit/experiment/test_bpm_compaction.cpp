@@ -1,4 +1,3 @@
-#include "softgrain/experiment/bpm_compaction.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,9 +9,10 @@
 #include <string>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/experiment/create.hpp"
+#include "softgrain/experiment/bpm_sample.hpp"
 #include "softgrain/math/tensor.hpp"
 #include "softgrain/observe/stress.hpp"
+#include "support/simulations.hpp"
 
 using namespace softgrain;
 
@@ -34,7 +34,7 @@ Case small_case() {
 
 std::map<std::string, double> row_of(Simulation& simulation) {
   std::map<std::string, double> row;
-  for (const Quantity& quantity : simulation.observe()) row[quantity.name] = quantity.value;
+  for (const Quantity& quantity : test::next_row(simulation)) row[quantity.name] = quantity.value;
   return row;
 }
 
@@ -59,8 +59,8 @@ const std::vector<double>& numbers(const Array& array) { return std::get<std::ve
 TEST_CASE("both models begin with the same sample, bit for bit") {
   Case c = small_case();
   c.sample.seed = 7;
-  const BpmCompaction bpm(c);
-  CHECK(hash_of(bpm.sample()) == hash_of(sample_box({.grains = 6, .packing_fraction = 0.6, .seed = 7})));
+  const BoxSample placed = sample_box(c);
+  CHECK(hash_of(placed) == hash_of(sample_box({.grains = 6, .packing_fraction = 0.6, .seed = 7})));
   c.experiment.model = GrainModel::mpm;
   c.mpm.cells = 4;
   const Scene scene = create_simulation(c)->scene();
@@ -74,21 +74,22 @@ TEST_CASE("both models begin with the same sample, bit for bit") {
     ++vertices[grain[v]];
   }
   for (int g = 0; g < 6; ++g)
-    CHECK(norm((1.0 / vertices[g]) * centre[g] - bpm.sample().grains[g].centre) < 1e-12);
+    CHECK(norm((1.0 / vertices[g]) * centre[g] - placed.grains[g].centre) < 1e-12);
 }
 
 TEST_CASE("grains of primaries stand in their places without overlap, each with the mass of its disk") {
   const Case c = small_case();
-  const BpmCompaction simulation(c);
-  const auto& p = simulation.dynamics().particles;
+  const BoxSample box = sample_box(c);
+  const BpmSample sample = fill_box(box, prepare_library(c), c);
+  const RigidParticles<2>& p = sample.particles;
   CHECK(p.size() == 180);
-  CHECK(simulation.displaced() < 0.2);
+  CHECK(sample.displaced < 0.2);
   std::vector<double> mass(6, 0);
   std::vector<Vec<2>> centre(6);
   for (int i = 0; i < p.size(); ++i) {
     mass[p.grain[i]] += p.mass[i];
     centre[p.grain[i]] += p.mass[i] * p.position[i];
-    for (const Wall<2>& wall : p.walls)
+    for (const Wall<2>& wall : walls_of(box).walls)
       CHECK(dot(p.position[i] - wall.point, wall.normal) > 0.998 * p.radius[i]);
     for (int j = 0; j < i; ++j)
       if (p.grain[i] != p.grain[j])
@@ -96,9 +97,9 @@ TEST_CASE("grains of primaries stand in their places without overlap, each with 
   }
   std::set<double> shapes;
   for (int g = 0; g < 6; ++g) {
-    const PlacedGrain& grain = simulation.sample().grains[g];
+    const PlacedGrain& grain = box.grains[g];
     CHECK(mass[g] == doctest::Approx(990 * std::numbers::pi * grain.radius * grain.radius));
-    CHECK(norm((1 / mass[g]) * centre[g] - grain.centre) < (simulation.displaced() + 1e-9) * grain.radius);
+    CHECK(norm((1 / mass[g]) * centre[g] - grain.centre) < (sample.displaced + 1e-9) * grain.radius);
     shapes.insert(std::round(1e6 * p.radius[30 * g] / grain.radius));
   }
   CHECK(shapes.size() == 2);  // of two different aggregates
@@ -111,10 +112,10 @@ TEST_CASE(
   c.contact.wall_friction = 0.25;
   c.bpm.inner_friction = 0.125;
   c.bpm.cohesive_pressure = 2e6;
-  BpmCompaction simulation(c);
+  Simulation simulation = test::simulation_of(c);
   for (int step = 0; step < 2000; ++step) simulation.step();
-  const auto& p = simulation.dynamics().particles;
-  const auto& contacts = simulation.dynamics().contacts;
+  const auto& p = test::bonded(simulation).particles;
+  const auto& contacts = test::bonded(simulation).contacts;
   int inner = 0, between = 0, wall = 0;
   for (int k = 0; k < contacts.size(); ++k) {
     const int a = contacts.body_a[k], b = contacts.body_b[k];
@@ -140,12 +141,12 @@ TEST_CASE("F0 follows the size of the primaries, so that every grain has the sam
   alone.sample.packing_fraction = 0.4;
   Case stronger = alone;
   stronger.bpm.cohesive_pressure *= 3;
-  BpmCompaction a(alone), b(stronger);
+  Simulation a = test::simulation_of(alone), b = test::simulation_of(stronger);
   CHECK(row_of(b)["attraction_energy"] == doctest::Approx(3 * row_of(a)["attraction_energy"]));
   Case large = alone;  // twice as large: F0 and lengths double
   large.sample.smallest_diameter *= 2;
   large.sample.largest_diameter *= 2;
-  BpmCompaction l(large);
+  Simulation l = test::simulation_of(large);
   CHECK(row_of(l)["attraction_energy"] == doctest::Approx(4 * row_of(a)["attraction_energy"]));
 }
 
@@ -169,7 +170,7 @@ TEST_CASE("with primaries of one size, larger grains have more of them") {
 }
 
 TEST_CASE("a packing is compacted until its primaries are close packed, whole, and says why it ends") {
-  BpmCompaction simulation(small_case());
+  Simulation simulation = test::simulation_of(small_case());
   CHECK(simulation.early_end().empty());
   double error = 0, work = 1;
   while (!simulation.finished()) {
@@ -193,8 +194,9 @@ TEST_CASE("a packing is compacted until its primaries are close packed, whole, a
   CHECK(row["solid_fraction"] < 0.9);
   CHECK(row["z"] > 2);
   CHECK(row["stress_top"] > 5e5);
-  const Vec<2> box{simulation.sample().width, simulation.sample().height};
-  for (const Vec<2>& x : simulation.dynamics().particles.position)
+  const BoxSample sample = sample_box(small_case());
+  const Vec<2> box{sample.width, sample.height};
+  for (const Vec<2>& x : test::bonded(simulation).particles.position)
     for (int d = 0; d < 2; ++d) CHECK((x[d] > 0 && x[d] < box[d]));
 }
 
@@ -202,16 +204,16 @@ TEST_CASE("a packing at rest has the stress of its walls by Love and Weber, and 
   Case c = small_case();
   c.loading.max_strain = 0.5;
   c.loading.hold = 3e-3;
-  BpmCompaction simulation(c);
+  Simulation simulation = test::simulation_of(c);
   constexpr int last = 1000;
   while (simulation.steps_done() < simulation.steps_planned() - last) simulation.step();
   auto row = row_of(simulation);
-  REQUIRE(simulation.dynamics().particles.velocity.back() == Vec<2>{});
-  const double area = simulation.sample().width * row["wall_height"];
+  REQUIRE(test::bonded(simulation).particles.velocity.back() == Vec<2>{});
+  const double area = simulation.box().volume();
   Mat<2> sigma;
   while (!simulation.finished()) {
     simulation.step();
-    sigma += (1.0 / last) * contact_stress(simulation.contact_points(), simulation.centres(), area);
+    sigma += (1.0 / last) * contact_stress(simulation.model().contacts(), simulation.model().centres(), area);
   }
   row = row_of(simulation);        // wall stresses: means over the same steps
   CHECK(row["stress_top"] > 1e4);  // loaded; how much, each rounding decides anew
@@ -224,7 +226,7 @@ TEST_CASE("a packing at rest has the stress of its walls by Love and Weber, and 
 TEST_CASE("an overlap that is asked for ends a compaction before the close packing") {
   Case c = small_case();
   c.loading.max_overlap = 2e-5;
-  BpmCompaction simulation(c);
+  Simulation simulation = test::simulation_of(c);
   double overlap = 0;
   while (!simulation.finished()) {
     CHECK(overlap < 2e-5);
@@ -242,12 +244,12 @@ TEST_CASE("an overlap that is asked for ends a compaction before the close packi
 TEST_CASE("a stress ends the compaction") {
   Case c = small_case();
   c.loading.max_stress = 2e5;
-  BpmCompaction simulation(c);
+  Simulation simulation = test::simulation_of(c);
   while (!simulation.finished()) simulation.step();
   CHECK(simulation.early_end() == "loading.max_stress is reached");
   CHECK(simulation.progress() == 1);
   // where the run ends is part of its state
-  BpmCompaction restored(c);
+  Simulation restored = test::simulation_of(c);
   restored.restore(simulation.checkpoint());
   CHECK(restored.finished());
   CHECK(restored.early_end() == simulation.early_end());
@@ -256,16 +258,16 @@ TEST_CASE("a stress ends the compaction") {
 TEST_CASE("a restored compaction goes on bit for bit") {
   Case c = small_case();
   c.contact.friction = 0.5;
-  BpmCompaction through(c), resumed(c);
+  Simulation through = test::simulation_of(c), resumed = test::simulation_of(c);
   for (int step = 0; step < 700; ++step) through.step();
-  through.observe();
+  test::next_row(through);
   for (int step = 0; step < 137; ++step) through.step();
   resumed.restore(through.checkpoint());
   for (int step = 0; step < 500; ++step) {
     through.step();
     resumed.step();
   }
-  REQUIRE(through.dynamics().reference.generation > 10);
+  REQUIRE(test::bonded(through).reference.generation > 10);
   const Checkpoint a = through.checkpoint(), b = resumed.checkpoint();
   REQUIRE(a.arrays.size() == b.arrays.size());
   for (const auto& array : a.arrays) {

@@ -5,9 +5,8 @@
 #include <numeric>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/experiment/bpm_compression.hpp"
 #include "softgrain/experiment/bpm_step.hpp"
-#include "softgrain/experiment/create.hpp"
+#include "support/simulations.hpp"
 
 using namespace softgrain;
 
@@ -27,7 +26,7 @@ void advance(Simulation& simulation, int steps) {
 }
 
 void check_same_row(Simulation& a, Simulation& b) {
-  const auto row_a = a.observe(), row_b = b.observe();
+  const auto row_a = test::next_row(a), row_b = test::next_row(b);
   REQUIRE(row_a.size() == row_b.size());
   for (std::size_t k = 0; k < row_a.size(); ++k) {
     CAPTURE(row_a[k].name);
@@ -49,38 +48,31 @@ void check_same_state(const Simulation& a, const Simulation& b) {
   }
 }
 
-double value_of(const std::vector<Quantity>& row, const std::string& name) {
-  for (const Quantity& quantity : row)
-    if (quantity.name == name) return quantity.value;
-  FAIL("no quantity named ", name);
-  return 0;
-}
-
 }  // namespace
 
 TEST_CASE("a restored compression goes on bit for bit, whenever it was saved") {
-  BpmCompression through(small_case());
+  Simulation through = test::simulation_of(small_case());
   std::vector<Checkpoint> saved;
   std::vector<int> generation;
   for (int step = 0; step < 200; ++step) {
     if (step == 1 || step == 100 || step == 137) saved.push_back(through.checkpoint());
-    if (step % 50 == 0) generation.push_back(through.dynamics().reference.generation);
-    if (step == 60) through.observe();  // starts a new row, whose sums are then part of the state
+    if (step % 50 == 0) generation.push_back(test::bonded(through).reference.generation);
+    if (step == 60) test::next_row(through);  // starts a new row, whose sums are then part of the state
     through.step();
   }
   REQUIRE(generation.back() > generation[2]);  // the lists were made again between 100 and 150
   REQUIRE(generation[2] > generation[0]);      // and before 100
-  const std::vector<Quantity> row = through.observe();
+  const std::vector<Quantity> row = test::next_row(through);
   for (const Checkpoint& checkpoint : saved) {
     CAPTURE(checkpoint.step);
-    BpmCompression resumed(small_case());
+    Simulation resumed = test::simulation_of(small_case());
     resumed.restore(checkpoint);
     CHECK(resumed.steps_done() == checkpoint.step);
     for (std::int64_t step = checkpoint.step; step < 200; ++step) {
-      if (step == 60) resumed.observe();
+      if (step == 60) test::next_row(resumed);
       resumed.step();
     }
-    const std::vector<Quantity> again = resumed.observe();
+    const std::vector<Quantity> again = test::next_row(resumed);
     for (std::size_t k = 0; k < row.size(); ++k) {
       CAPTURE(row[k].name);
       CHECK(again[k].value == row[k].value);
@@ -92,7 +84,7 @@ TEST_CASE("a restored compression goes on bit for bit, whenever it was saved") {
 TEST_CASE("a restored compression shows at once what the saved one showed") {
   Case c = small_case();
   c.loading.max_strain = 0.5;
-  BpmCompression saved(c), restored(c);
+  Simulation saved = test::simulation_of(c), restored = test::simulation_of(c);
   advance(saved, 3000);  // far enough for primaries to have found other neighbours
   restored.restore(saved.checkpoint());
   const Scene a = saved.scene(), b = restored.scene();
@@ -109,46 +101,46 @@ TEST_CASE("a restored compression shows at once what the saved one showed") {
 TEST_CASE("a checkpoint of another case is refused by the array that does not fit") {
   Case other = small_case();
   other.bpm.primaries = 61;
-  BpmCompression of_sixty(small_case()), of_one_more(other);
+  Simulation of_sixty = test::simulation_of(small_case()), of_one_more = test::simulation_of(other);
   CHECK_THROWS_WITH_AS(of_one_more.restore(of_sixty.checkpoint()),
-                       "the checkpoint has no array 'position' of 61 rows: it belongs to another case",
+                       doctest::Contains("no array 'position' of 2 numbers a row and 61 rows: it belongs to"),
                        IoError);
   Checkpoint incomplete = of_sixty.checkpoint();
   incomplete.arrays.erase("wall_point");
   CHECK_THROWS_WITH_AS(of_sixty.restore(incomplete),
-                       "the checkpoint has no array 'wall_point' of 2 rows: it belongs to another case",
+                       doctest::Contains("no array 'wall_point' of 2 numbers a row and 2 rows: it belongs to"),
                        IoError);
 }
 
 TEST_CASE("the plates start at the grain's lowest and highest point, and the top one follows the path") {
-  BpmCompression simulation(small_case());
-  const auto& particles = simulation.dynamics().particles;
+  Simulation simulation = test::simulation_of(small_case());
+  const auto& particles = test::bonded(simulation).particles;
   double low = 1, high = -1;
   for (int i = 0; i < particles.size(); ++i) {
     low = std::min(low, particles.position[i][1] - particles.radius[i]);
     high = std::max(high, particles.position[i][1] + particles.radius[i]);
   }
-  CHECK(particles.walls[0].point[1] == doctest::Approx(low).epsilon(1e-14));
-  CHECK(particles.walls[1].point[1] == doctest::Approx(high).epsilon(1e-14));
-  CHECK(value_of(simulation.observe(), "strain") == 0);
+  CHECK(simulation.box().walls[0].point[1] == doctest::Approx(low).epsilon(1e-14));
+  CHECK(simulation.box().walls[1].point[1] == doctest::Approx(high).epsilon(1e-14));
+  CHECK(test::value_of(test::next_row(simulation), "strain") == 0);
   advance(simulation, 100);
-  CHECK(particles.walls[0].point[1] == doctest::Approx(low).epsilon(1e-14));
-  CHECK(particles.walls[1].point[1] == doctest::Approx(high - 100 * 4 * 0.25e-6).epsilon(1e-12));
-  const auto row = simulation.observe();
-  CHECK(value_of(row, "strain") == doctest::Approx(-std::log(1 - 50 * 4 * 0.25e-6 / 5e-3)).epsilon(1e-9));
-  CHECK(value_of(row, "wall_height") == doctest::Approx(high - low - 1e-4).epsilon(1e-12));
-  CHECK(value_of(row, "time") == doctest::Approx(100 * 0.25e-6).epsilon(1e-14));
+  CHECK(simulation.box().walls[0].point[1] == doctest::Approx(low).epsilon(1e-14));
+  CHECK(simulation.box().walls[1].point[1] == doctest::Approx(high - 100 * 4 * 0.25e-6).epsilon(1e-12));
+  const auto row = test::next_row(simulation);
+  CHECK(test::value_of(row, "strain") == doctest::Approx(-std::log(1 - 50 * 4 * 0.25e-6 / 5e-3)).epsilon(1e-9));
+  CHECK(test::value_of(row, "wall_height") == doctest::Approx(high - low - 1e-4).epsilon(1e-12));
+  CHECK(test::value_of(row, "time") == doctest::Approx(100 * 0.25e-6).epsilon(1e-14));
 }
 
 TEST_CASE("the grain weighs rho pi R^2 and friction differs inside and at the walls") {
   Case c = small_case();
   c.contact.friction = 0.2;
   c.contact.wall_friction = 0.5;
-  const BpmCompression simulation(c);
-  const auto& particles = simulation.dynamics().particles;
+  const Simulation simulation = test::simulation_of(c);
+  const auto& particles = test::bonded(simulation).particles;
   const double mass = std::accumulate(particles.mass.begin(), particles.mass.end(), 0.0);
   CHECK(mass == doctest::Approx(990 * std::numbers::pi * 25e-6).epsilon(1e-13));
-  const auto& contacts = simulation.dynamics().contacts;
+  const auto& contacts = test::bonded(simulation).contacts;
   int inner = 0, outer = 0;
   for (int k = 0; k < contacts.size(); ++k) {
     const bool wall = contacts.body_b[k] >= particles.size();
@@ -175,7 +167,7 @@ TEST_CASE("progress runs from zero to one over the planned steps") {
 TEST_CASE("a turning point is the state between two legs of the path") {
   Case c = small_case();
   c.loading = {.wall_velocity = 4, .max_strain = 0.002, .unload_at = {0.001}, .unload_by = 0.0005};
-  BpmCompression simulation(c);
+  Simulation simulation = test::simulation_of(c);
   std::vector<std::int64_t> turns;
   while (!simulation.finished()) {
     simulation.step();
@@ -187,43 +179,43 @@ TEST_CASE("a turning point is the state between two legs of the path") {
 }
 
 TEST_CASE("a row's wall forces are means over the steps since the last row") {
-  BpmCompression simulation(small_case());
+  Simulation simulation = test::simulation_of(small_case());
   advance(simulation, 100);
-  simulation.observe();
+  test::next_row(simulation);
   double bottom = 0, top = 0;
   for (int k = 0; k < 10; ++k) {
     simulation.step();
-    bottom -= simulation.dynamics().wall_impulse(0)[1] / (10 * 0.25e-6);
-    top += simulation.dynamics().wall_impulse(1)[1] / (10 * 0.25e-6);
+    bottom -= test::bonded(simulation).wall_impulse(0)[1] / (10 * 0.25e-6);
+    top += test::bonded(simulation).wall_impulse(1)[1] / (10 * 0.25e-6);
   }
-  const auto row = simulation.observe();
+  const auto row = test::next_row(simulation);
   CHECK(top > 0);
-  CHECK(value_of(row, "force_bottom") == doctest::Approx(bottom).epsilon(1e-12));
-  CHECK(value_of(row, "force_top") == doctest::Approx(top).epsilon(1e-12));
-  CHECK(value_of(row, "stress_top") == doctest::Approx(top / value_of(row, "width")).epsilon(1e-12));
+  CHECK(test::value_of(row, "force_bottom") == doctest::Approx(bottom).epsilon(1e-12));
+  CHECK(test::value_of(row, "force_top") == doctest::Approx(top).epsilon(1e-12));
+  CHECK(test::value_of(row, "stress_top") == doctest::Approx(top / test::value_of(row, "width")).epsilon(1e-12));
 }
 
 TEST_CASE("the width is that of the grain, and the scene's contacts are those of the row") {
-  BpmCompression simulation(small_case());
+  Simulation simulation = test::simulation_of(small_case());
   advance(simulation, 200);
-  while (simulation.dynamics().wall_impulse(1) == Vec<2>{}) simulation.step();
-  const auto& particles = simulation.dynamics().particles;
+  while (test::bonded(simulation).wall_impulse(1) == Vec<2>{}) simulation.step();
+  const auto& particles = test::bonded(simulation).particles;
   double left = 1, right = -1;
   for (int i = 0; i < particles.size(); ++i) {
     left = std::min(left, particles.position[i][0] - particles.radius[i]);
     right = std::max(right, particles.position[i][0] + particles.radius[i]);
   }
-  const auto row = simulation.observe();
-  CHECK(value_of(row, "width") == doctest::Approx(right - left).epsilon(1e-13));
+  const auto row = test::next_row(simulation);
+  CHECK(test::value_of(row, "width") == doctest::Approx(right - left).epsilon(1e-13));
 
   const Scene scene = simulation.scene();
   const auto& pairs = std::get<std::vector<std::int64_t>>(scene.contacts.at("pair").values);
   const auto& coordination = std::get<std::vector<double>>(scene.particles.at("coordination").values);
-  const double contacts = value_of(row, "contacts");
+  const double contacts = test::value_of(row, "contacts");
   const auto inner =
       static_cast<double>(std::ranges::count_if(pairs, [](std::int64_t i) { return i < 60; })) - contacts;
   CHECK(pairs.size() == 2 * contacts);
-  CHECK(value_of(row, "z_primaries") == doctest::Approx(2 * inner / 60).epsilon(1e-14));
+  CHECK(test::value_of(row, "z_primaries") == doctest::Approx(2 * inner / 60).epsilon(1e-14));
   CHECK(contacts > inner);  // the plates'
   // an inner contact belongs to two primaries, one with a plate to one
   CHECK(std::accumulate(coordination.begin(), coordination.end(), 0.0) == contacts + inner);
@@ -232,7 +224,7 @@ TEST_CASE("the width is that of the grain, and the scene's contacts are those of
 TEST_CASE("in a grain without load the pushing contacts balance the pulling attraction") {
   Case c = small_case();
   c.loading.wall_velocity = 1e-3;
-  BpmCompression simulation(c);
+  Simulation simulation = test::simulation_of(c);
   advance(simulation, 1000);
   const auto scene = simulation.scene();
   const auto& pressure = std::get<std::vector<double>>(scene.particles.at("pressure").values);
@@ -242,26 +234,26 @@ TEST_CASE("in a grain without load the pushing contacts balance the pulling attr
     sum += radius[i] * radius[i] * pressure[i];
     squares += radius[i] * radius[i];
   }
-  CHECK(std::abs(sum / squares) < 0.02 * simulation.sigma_I());
+  CHECK(std::abs(sum / squares) < 0.02 * test::value_of(test::next_row(simulation), "sigma_I"));
 }
 
 TEST_CASE("a grain torn in two counts two clusters") {
-  BpmCompression simulation(small_case());
-  CHECK(value_of(simulation.observe(), "clusters") == 1);
+  Simulation simulation = test::simulation_of(small_case());
+  CHECK(test::value_of(test::next_row(simulation), "clusters") == 1);
   Checkpoint torn = simulation.checkpoint();
-  const double a0 = small_case().bpm.attraction / simulation.sigma_I();
+  const double a0 = small_case().bpm.attraction / test::value_of(test::next_row(simulation), "sigma_I");
   auto& x = std::get<std::vector<double>>(torn.arrays.at("position").values);
   for (std::size_t i = 0; i < x.size(); i += 2)
     if (x[i] > 0) x[i] += 0.8 * a0;  // still within the reach of the attraction
   simulation.restore(torn);
-  CHECK(value_of(simulation.observe(), "clusters") == 2);
+  CHECK(test::value_of(test::next_row(simulation), "clusters") == 2);
 }
 
 TEST_CASE("a compression that cannot be run is refused with the key and the value") {
   const auto with = [](auto change) {
     Case c = small_case();
     change(c);
-    return [c] { BpmCompression{c}; };
+    return [c] { create_simulation(c); };
   };
   CHECK_THROWS_AS(with([](Case& c) { c.contact.restitution = 0.5; })(), UsageError);
   CHECK_THROWS_AS(with([](Case& c) { c.contact.push_out = 2; })(), UsageError);
@@ -275,7 +267,7 @@ TEST_CASE("a compression that cannot be run is refused with the key and the valu
 TEST_CASE("a plate that leaves no room ends with a NumericalError that says what to change") {
   Case c = small_case();
   c.loading = {.wall_velocity = 50, .max_strain = 4, .unload_at = {}};
-  BpmCompression simulation(c);
+  Simulation simulation = test::simulation_of(c);
   try {
     while (!simulation.finished()) simulation.step();
     FAIL("rigid primaries went into a gap smaller than one of them");

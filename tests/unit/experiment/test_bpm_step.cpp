@@ -7,10 +7,9 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/advice.hpp"
-#include "softgrain/experiment/bpm_compaction.hpp"
-#include "softgrain/experiment/bpm_compression.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/run.hpp"
+#include "support/simulations.hpp"
 
 using namespace softgrain;
 
@@ -28,7 +27,7 @@ struct Quality {
   double converged = 0, overlap_max = 0, steps = 0;
 };
 Quality quality_of(const Case& c) {
-  BpmCompression grain(c);
+  Simulation grain = test::simulation_of(c);
   Quality quality;
   while (!grain.finished()) {
     const StepReport report = grain.step();
@@ -70,8 +69,8 @@ TEST_CASE("the step follows sqrt(m a0/F0): by size, density, attraction, exponen
 TEST_CASE("the period is that of the smallest primaries that a grain really has, within a few per cent") {
   Case c;
   c.bpm.primaries = 400;
-  const BpmCompression grain(c);
-  const auto& p = grain.dynamics().particles;
+  const Simulation grain = test::simulation_of(c);
+  const auto& p = test::bonded(grain).particles;
   const auto smallest = std::min_element(p.radius.begin(), p.radius.end()) - p.radius.begin();
   const double m = p.mass[smallest], a0 = 2 * p.radius[smallest];
   const double period = 2 * std::numbers::pi * std::sqrt(m * a0 / (2 * c.bpm.exponent * c.bpm.attraction));
@@ -109,7 +108,7 @@ TEST_CASE("time.step = 0 is the stable step, to the bit") {
   automatic.bpm.primaries = 30;
   Case given = automatic;
   given.time.step = stable_bond_step(given);
-  BpmCompression a(automatic), b(given);
+  Simulation a = test::simulation_of(automatic), b = test::simulation_of(given);
   for (int step = 0; step < 20; ++step) a.step(), b.step();
   CHECK(a.time() == 20 * given.time.step);
   CHECK((a.checkpoint().arrays.at("position").values == b.checkpoint().arrays.at("position").values));
@@ -127,7 +126,7 @@ TEST_CASE(
     c.loading = {.wall_velocity = 2000, .max_strain = 2.9};  // the lid closes the box in a few steps
     c.time.step = 0.2e-6;
     if (stops_by_overlap) c.loading.max_overlap = 0.05;
-    BpmCompaction simulation(c);
+    Simulation simulation = test::simulation_of(c);
     CHECK_THROWS_AS(
         {
           while (!simulation.finished()) simulation.step();

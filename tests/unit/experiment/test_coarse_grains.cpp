@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 #include <vector>
+#include "support/simulations.hpp"
 
-#include "softgrain/experiment/create.hpp"
 
 using namespace softgrain;
 
@@ -22,22 +22,16 @@ Case packing(int cells, Integrator integrator, int grains = 100) {
   return c;
 }
 
-double value_of(const std::vector<Quantity>& row, std::string_view name) {
-  const auto found = std::ranges::find(row, name, &Quantity::name);
-  REQUIRE(found != row.end());
-  return found->value;
-}
-
 /// No contact carries and no energy is there, over E R^2; areas are those of the case.
 void check_at_rest(const Case& c, Simulation& simulation) {
-  const auto row = simulation.observe();
+  const auto row = test::next_row(simulation);
   const double R = c.sample.largest_diameter / 2, unit = c.mpm.young_modulus * R * R;
-  CHECK(value_of(row, "contacts") == 0);
-  CHECK(std::abs(value_of(row, "elastic_energy")) < 1e-12 * unit);
-  CHECK(std::abs(value_of(row, "dissipation_contact")) < 1e-12 * unit);
-  CHECK(value_of(row, "kinetic_energy") < 1e-12 * unit);
-  CHECK(value_of(row, "phi") == doctest::Approx(c.sample.packing_fraction).epsilon(1e-5));
-  CHECK(value_of(row, "area_ratio") == doctest::Approx(1).epsilon(1e-9));
+  CHECK(test::value_of(row, "contacts") == 0);
+  CHECK(std::abs(test::value_of(row, "elastic_energy")) < 1e-12 * unit);
+  CHECK(std::abs(test::value_of(row, "dissipation_contact")) < 1e-12 * unit);
+  CHECK(test::value_of(row, "kinetic_energy") < 1e-12 * unit);
+  CHECK(test::value_of(row, "phi") == doctest::Approx(c.sample.packing_fraction).epsilon(1e-5));
+  CHECK(test::value_of(row, "area_ratio") == doctest::Approx(1).epsilon(1e-9));
 }
 
 }  // namespace
@@ -75,7 +69,7 @@ TEST_CASE("grains of two cells take no more Newton iterations at the start than 
     int sum = 0;
     for (int k = 0; k < 5; ++k) {
       simulation->step();
-      sum += static_cast<int>(value_of(simulation->observe(), "iterations"));
+      sum += static_cast<int>(test::value_of(test::next_row(*simulation), "iterations"));
     }
     return sum;
   };
@@ -94,12 +88,12 @@ TEST_CASE("a grain of any number of cells starts between plates that only touch 
       c.mpm.time_step = 1e-7;
       c.loading = {.wall_velocity = 2e-5, .max_strain = 1e-3, .unload_at = {}};
       const auto simulation = create_simulation(c);
-      CHECK(value_of(simulation->observe(), "wall_height") == doctest::Approx(2 * c.grain.radius));
-      CHECK(value_of(simulation->observe(), "area_ratio") == doctest::Approx(1));
+      CHECK(test::value_of(test::next_row(*simulation), "wall_height") == doctest::Approx(2 * c.grain.radius));
+      CHECK(test::value_of(test::next_row(*simulation), "area_ratio") == doctest::Approx(1));
       simulation->step();
-      const auto row = simulation->observe();
+      const auto row = test::next_row(*simulation);
       const double unit = c.mpm.young_modulus * c.grain.radius * c.grain.radius;
-      CHECK(std::abs(value_of(row, "elastic_energy")) < 1e-12 * unit);
-      CHECK(value_of(row, "kinetic_energy") < 1e-12 * unit);
+      CHECK(std::abs(test::value_of(row, "elastic_energy")) < 1e-12 * unit);
+      CHECK(test::value_of(row, "kinetic_energy") < 1e-12 * unit);
     }
 }

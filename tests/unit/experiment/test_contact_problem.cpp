@@ -5,10 +5,8 @@
 
 #include "softgrain/contact/contact_problem.hpp"
 #include "softgrain/core/error.hpp"
-#include "softgrain/experiment/bpm_simulation.hpp"
 #include "softgrain/experiment/bpm_step.hpp"
-#include "softgrain/experiment/create.hpp"
-#include "softgrain/experiment/mpm_simulation.hpp"
+#include "support/simulations.hpp"
 
 using namespace softgrain;
 
@@ -59,7 +57,7 @@ TEST_CASE("W p + q of a step of bonded grains is the velocity at which their sur
   const auto simulation = create_simulation(c);
   advance(*simulation, 0.4);
   const SolvedContactProblem solved = simulation->step_and_catch_problem();
-  const auto& dynamics = dynamic_cast<const BpmSimulation&>(*simulation).dynamics();
+  const auto& dynamics = test::bonded(*simulation);
   const auto& particles = dynamics.particles;
   const auto& contacts = dynamics.contacts;
   REQUIRE(solved.problem.contacts() == contacts.size());

@@ -2,18 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include "support/simulations.hpp"
 
-#include "softgrain/experiment/create.hpp"
 
 using namespace softgrain;
 
 namespace {
-
-double value_of(const std::vector<Quantity>& row, std::string_view name) {
-  const auto found = std::ranges::find(row, name, &Quantity::name);
-  REQUIRE(found != row.end());
-  return found->value;
-}
 
 /// Few legs, most of them shorter than a step, so that a rounding to whole steps would be seen at once.
 Case case_of(LoadingPath loading, GrainModel model) {
@@ -37,10 +31,10 @@ void check_ends(const Case& c) {
   CAPTURE(c.experiment.model);
   CAPTURE(c.mpm.integrator);
   const auto simulation = create_simulation(c);
-  const double start = value_of(simulation->observe(), "wall_height");
+  const double start = test::value_of(test::next_row(*simulation), "wall_height");
   const bool box = c.experiment.loading != LoadingPath::diametral;
   const auto strain = [&] {
-    const double h = value_of(simulation->observe(), "wall_height");
+    const double h = test::value_of(test::next_row(*simulation), "wall_height");
     return box ? std::log(start / h) : -std::log(1 - (start - h) / (2 * c.grain.radius));
   };
   std::vector<double> ends;
@@ -83,6 +77,6 @@ TEST_CASE("a packing fraction that is asked for at the end is met") {
     c.experiment.loading = loading;
     const auto simulation = create_simulation(c);
     while (!simulation->finished()) simulation->step();
-    CHECK(value_of(simulation->observe(), "phi_0") == doctest::Approx(0.313).epsilon(1e-9));
+    CHECK(test::value_of(test::next_row(*simulation), "phi_0") == doctest::Approx(0.313).epsilon(1e-9));
   }
 }

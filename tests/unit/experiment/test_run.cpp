@@ -3,37 +3,31 @@
 #include <string>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/run.hpp"
+#include "support/fake_simulation.hpp"
 
 using namespace softgrain;
 
 namespace {
 
-/// Ten steps; step k takes k sweeps, has the residual 1/k and the overlap 0.1 k; every third one converges.
-class Countdown : public Simulation {
+/// Step k takes k sweeps, has the residual 1/k and the overlap 0.1 k; every third one converges.
+class Countdown final : public test::FakeModel {
  public:
-  bool finished() const override { return done_ == 10; }
-  double progress() const override { return static_cast<double>(done_) / 10; }
-  double time() const override { return static_cast<double>(done_); }
-  double strain() const override { return 0; }
-  std::int64_t steps_done() const override { return done_; }
-  std::int64_t steps_planned() const override { return 10; }
-  bool at_turning_point() const override { return false; }
-  void follow(PlateMotion) override {}
-  StepReport step() override {
-    const int k = static_cast<int>(++done_);
+  explicit Countdown(int breaks_at = 0) : breaks_at_(breaks_at) {}
+  std::unique_ptr<Model> copy() const override { return std::make_unique<Countdown>(*this); }
+  StepReport step(Box<2>&, double) override {
+    const int k = ++done_;
+    if (k == breaks_at_) throw NumericalError("too fast");
     return {.sweeps = k, .residual_max = 1.0 / k, .overlap_max = 0.1 * k, .converged = k % 3 == 0};
   }
-  std::vector<Quantity> observe() override { return {}; }
-  Scene scene() const override { return {}; }
-  std::vector<GrainView> grains() const override { return {}; }
-  Checkpoint checkpoint() const override { return {}; }
-  void restore(const Checkpoint&) override {}
 
  private:
-  std::int64_t done_ = 0;
+  int breaks_at_, done_ = 0;
 };
+
+Simulation countdown(int breaks_at = 0) {
+  return test::at_rest(std::make_unique<Countdown>(breaks_at), 10, 1);
+}
 
 /// Stops the run after a step.
 struct StopAfter final : Recorder {
@@ -50,7 +44,7 @@ struct StopAfter final : Recorder {
 }  // namespace
 
 TEST_CASE("a run goes on until the simulation is finished and sums up its steps") {
-  Countdown simulation;
+  Simulation simulation = countdown();
   StopAfter recorder(100);
   const RunReport report = run(simulation, recorder);
   CHECK(report.steps == 10);
@@ -62,18 +56,13 @@ TEST_CASE("a run goes on until the simulation is finished and sums up its steps"
 }
 
 TEST_CASE("an error of the numbers tells the step in which they broke down") {
-  struct Broken : Countdown {
-    StepReport step() override {
-      if (steps_done() == 6) throw NumericalError("too fast");
-      return Countdown::step();
-    }
-  } simulation;
+  Simulation simulation = countdown(7);
   StopAfter recorder(100);
   CHECK_THROWS_WITH_AS(run(simulation, recorder), "step 7: too fast", NumericalError);
 }
 
 TEST_CASE("the recorder stops a run, which goes on later where it stopped") {
-  Countdown simulation;
+  Simulation simulation = countdown();
   StopAfter first(4), second(100);
   const RunReport half = run(simulation, first);
   CHECK(half.steps == 4);
@@ -83,7 +72,7 @@ TEST_CASE("the recorder stops a run, which goes on later where it stopped") {
 }
 
 TEST_CASE("a finished simulation makes no step") {
-  Countdown simulation;
+  Simulation simulation = countdown();
   StopAfter recorder(100);
   run(simulation, recorder);
   CHECK(run(simulation, recorder).steps == 0);

@@ -1,4 +1,5 @@
-#include "softgrain/experiment/soft_view.hpp"
+#include "softgrain/mpm/soft_view.hpp"
+#include "support/simulations.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "softgrain/experiment/create.hpp"
 
 using namespace softgrain;
 
@@ -16,7 +16,7 @@ namespace {
 
 std::map<std::string, double> row_of(Simulation& simulation) {
   std::map<std::string, double> row;
-  for (const Quantity& quantity : simulation.observe()) row[quantity.name] = quantity.value;
+  for (const Quantity& quantity : test::next_row(simulation)) row[quantity.name] = quantity.value;
   return row;
 }
 
@@ -44,7 +44,7 @@ TEST_CASE("the contacts of a scene of elastic grains carry the forces that their
     CAPTURE(integrator);
     const auto simulation = create_simulation(packing(integrator));
     for (auto left = 4 * simulation->steps_planned() / 5; left > 0; --left) simulation->step();
-    simulation->observe();
+    test::next_row(*simulation);
     simulation->step();
     auto row = row_of(*simulation);  // of this step alone
     const Scene scene = simulation->scene();

@@ -1,4 +1,3 @@
-#include "softgrain/experiment/updated_lagrangian_simulation.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,7 +5,6 @@
 #include <cmath>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/experiment/create.hpp"
 #include "support/simulations.hpp"
 
 using namespace softgrain;
@@ -37,7 +35,7 @@ TEST_CASE("an updated-Lagrangian run that goes on from a checkpoint has the bits
     c.mpm.contact_on = contact_on;
     const auto whole = create_simulation(c);
     advance(*whole, whole->steps_planned() / 2);
-    CHECK(value_of(whole->observe(), "contacts") > 2);
+    CHECK(value_of(test::next_row(*whole), "contacts") > 2);
     advance(*whole, 4);
     const Checkpoint half = whole->checkpoint();
     advance(*whole, 20);
@@ -52,14 +50,14 @@ TEST_CASE("an updated-Lagrangian run that goes on from a checkpoint has the bits
       CAPTURE(name);
       CHECK((array.values == b.arrays.at(name).values));
     }
-    const auto row = whole->observe(), resumed_row = resumed->observe();
+    const auto row = test::next_row(*whole), resumed_row = test::next_row(*resumed);
     for (std::size_t k = 0; k < row.size(); ++k) CHECK(row[k].value == resumed_row[k].value);
   }
 }
 
 TEST_CASE("an updated-Lagrangian grain starts unstressed between the plates and gives back its work") {
   const auto simulation = create_simulation(one_grain());
-  const auto start = simulation->observe();
+  const auto start = test::next_row(*simulation);
   CHECK(value_of(start, "wall_height") == doctest::Approx(2 * 5e-3).epsilon(0.01));
   CHECK(value_of(start, "area_ratio") == doctest::Approx(1));
   CHECK(value_of(start, "elastic_energy") == doctest::Approx(0));
@@ -70,7 +68,7 @@ TEST_CASE("an updated-Lagrangian grain starts unstressed between the plates and 
   }
   CHECK(turns == 2);
   CHECK(simulation->progress() == 1);
-  const auto end = simulation->observe();
+  const auto end = test::next_row(*simulation);
   CHECK(value_of(end, "strain") == doctest::Approx(0.1).epsilon(0.01));
   CHECK(value_of(end, "force_top") > 0);
   CHECK(value_of(end, "area_ratio") < 1);
@@ -93,7 +91,7 @@ TEST_CASE("a lattice grain at rest between plates gains no energy, and its budge
       double least = 1e300;
       while (!simulation->finished()) {
         advance(*simulation, 10);
-        const auto row = simulation->observe();
+        const auto row = test::next_row(*simulation);
         const auto value = [&](std::string_view name) { return value_of(row, name); };
         CHECK(std::abs(value("energy_error")) < 1e-9 * value("wall_work"));
         CHECK(value("dissipation") ==
@@ -105,7 +103,7 @@ TEST_CASE("a lattice grain at rest between plates gains no energy, and its budge
       }
       CHECK(least > 1);
       // what contact took is no sum of a back and forth at rest
-      const auto end = simulation->observe();
+      const auto end = test::next_row(*simulation);
       CHECK(std::abs(value_of(end, "dissipation_contact")) < 0.1 * value_of(end, "wall_work"));
     }
 }

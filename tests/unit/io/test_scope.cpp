@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "softgrain/experiment/create.hpp"
 #include "softgrain/io/case_file.hpp"
 #include "softgrain/io/case_text.hpp"
 #include "softgrain/io/case_value.hpp"
 #include "softgrain/io/schema.hpp"
 #include "softgrain/io/toml_document.hpp"
+#include "support/simulations.hpp"
 
 using namespace softgrain;
 
@@ -31,7 +31,7 @@ std::vector<double> rows(const Case& the_case) {
   std::vector<double> numbers;
   for (int k = 0; k < 3; ++k) {
     simulation->step();
-    for (const Quantity& quantity : simulation->observe()) numbers.push_back(quantity.value);
+    for (const Quantity& quantity : test::next_row(*simulation)) numbers.push_back(quantity.value);
   }
   return numbers;
 }

@@ -76,12 +76,8 @@ TEST_CASE(
 
 TEST_CASE("energy that comes from nothing is an error of the balance, also where the budget closes") {
   EnergyBalance energy;
-  energy.add({{"wall_work", "J/m", 0},
-              {"kinetic_energy", "J/m", 0.3},
-              {"attraction_energy", "J/m", -1.2},
-              {"dissipation", "J/m", -0.28},
-              {"energy_error", "J/m", 1e-9}});
+  energy.add({.kinetic = 0.3, .stored = -1.2, .dissipation = -0.28, .error = 1e-9});
   CHECK(energy.imbalance() == doctest::Approx(0.28 / 1.2));
-  energy.add({{"wall_work", "J/m", 5}, {"dissipation", "J/m", 3}, {"energy_error", "J/m", -0.5}});
+  energy.add({.wall_work = 5, .dissipation = 3, .error = -0.5});
   CHECK(energy.imbalance() == doctest::Approx(0.1));
 }

@@ -1,0 +1,318 @@
+#include "softgrain/bpm/bonded_grains.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "softgrain/bpm/primary_pressures.hpp"
+#include "softgrain/core/error.hpp"
+#include "softgrain/geometry/polygon.hpp"
+#include "softgrain/geometry/support.hpp"
+#include "softgrain/observe/clusters.hpp"
+#include "softgrain/observe/outlines.hpp"
+#include "softgrain/rigid/step_problem.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Two primaries of a grain hold together while their gap is below this share of a0 (F > 0.7 F0 for gamma =
+/// 7).
+constexpr double link_gap = 0.05;
+
+/// Beyond this overlap over the mean radius, in the mean or of one contact, primaries have no solution.
+constexpr double largest_mean_overlap = 0.05, largest_overlap = 0.5;
+
+/// Beyond this mean overlap of the contacts, over the mean radius, primaries that fill at least this share of
+/// the box are at their random close packing: the overlap is ten times smaller before, and grows tenfold with
+/// each per cent of strain.
+constexpr double close_packing_overlap = 5e-4;
+constexpr double close_packing_fraction = 0.82;
+constexpr double fullest_fraction = 0.95;  // no random packing of disks is as dense, overlaps included
+
+constexpr int first_step_factor = 200;
+
+void refuse_overlaps(const StepReport& report) {
+  if (report.overlap_mean <= largest_mean_overlap && report.overlap_max <= largest_overlap) return;
+  throw NumericalError(fmt::format(
+      "primaries overlap by {:.2g} of their radius in the mean, the deepest by {:.2g}, so the contact "
+      "problem has no solution; use a smaller time.step or more solver.max_sweeps, or stop at a smaller "
+      "loading.max_strain",
+      report.overlap_mean, report.overlap_max));
+}
+
+}  // namespace
+
+BondedGrains::BondedGrains(BondedGrainsSetup setup)
+    : grain_radius_(std::move(setup.grain_radius)),
+      density_(setup.density),
+      sigma_I_(setup.sigma_I),
+      attraction_(std::move(setup.laws)),
+      dynamics_(std::move(setup.particles), std::move(setup.friction), setup.options, setup.skin),
+      most_sweeps_(setup.options.solver.max_sweeps) {
+  set_reference(dynamics_.reference, dynamics_.particles);
+  dynamics_.rebuild_contacts();
+  attraction_.update(dynamics_.particles, dynamics_.reference);
+  work_.energy_start = attraction_.energy(dynamics_.particles);
+}
+
+StepReport BondedGrains::step(Box<2>& box, double dt) {
+  for (std::size_t w = 0; w < box.walls.size(); ++w)
+    set_wall_velocity(dynamics_.particles, static_cast<int>(w), box.walls[w].velocity);
+  if (keeps_problem_) velocity_start_ = dynamics_.particles.velocity;
+  dynamics_.options.solver.max_sweeps = most_sweeps_ * (impulse_time_ == 0 ? first_step_factor : 1);
+  StepReport report = dynamics_.step(
+      [&](const RigidParticles<2>& particles, std::span<Vec<2>> force) {
+        attraction_.update(particles, dynamics_.reference);
+        attraction_.add_forces(particles, force);
+      },
+      dt);
+  report.residual_limit = dynamics_.options.solver.worst_factor * dynamics_.options.solver.tolerance;
+  impulse_time_ = dt;
+  for (std::size_t w = 0; w < box.walls.size(); ++w) {
+    box.walls[w].point = dynamics_.particles.walls[w].point;
+    box.impulse[w] = dynamics_.wall_impulse(static_cast<int>(w));
+  }
+  add_work();
+  return report;
+}
+
+void BondedGrains::add_work() {
+  const StepWork& work = dynamics_.work;
+  work_.walls += work.wall;
+  work_.dissipation -= work.contact + work.push_out;
+  work_.between -= work.between;
+  work_.friction -= work.friction;
+}
+
+bool BondedGrains::is_exhausted(const StepReport& report, const Box<2>& box) const {
+  refuse_overlaps(report);
+  if (!box.closed() || report.overlap_mean <= close_packing_overlap) return false;
+  const double fraction = solid_fraction(box);
+  if (fraction > fullest_fraction)
+    throw NumericalError(
+        fmt::format("primaries fill {:.3f} of the box, more than fits: they have passed through each other "
+                    "or the walls; use a smaller time.step or more solver.max_sweeps",
+                    fraction));
+  return fraction > close_packing_fraction;
+}
+
+std::string BondedGrains::exhaustion(const Box<2>& box) const {
+  return fmt::format(
+      "the rigid primaries fill {:.3f} of the box, their random close packing, and overlap by more than {} of "
+      "their radius in the mean: no smaller box holds them",
+      solid_fraction(box), close_packing_overlap);
+}
+
+double BondedGrains::solid_fraction(const Box<2>& box) const {
+  double squares = 0;
+  for (const double r : dynamics_.particles.radius) squares += r * r;
+  return std::numbers::pi * squares / (box.width() * box.height());
+}
+
+std::pair<double, double> BondedGrains::extent() const {
+  const auto& p = dynamics_.particles;
+  return {-support(p.position, p.radius, {-1, 0}), support(p.position, p.radius, {1, 0})};
+}
+
+std::pair<double, double> BondedGrains::reach() const {
+  const auto [low, high] = extent();
+  const double reach = 1.1 * grain_radius_.front() + (high - low) / 2;
+  return {-reach, reach};
+}
+
+Energies BondedGrains::energies() const {
+  const double kinetic = kinetic_energy(dynamics_.particles);  // at rest before the first step
+  const double attraction = attraction_.energy(dynamics_.particles);
+  return {.kinetic = kinetic,
+          .stored = attraction,
+          .wall_work = work_.walls,
+          .dissipation = work_.dissipation,
+          .contact = work_.between,
+          .friction = work_.friction,
+          .error = work_.walls - kinetic - (attraction - work_.energy_start) - work_.dissipation};
+}
+
+int BondedGrains::clusters() const {
+  const auto& p = dynamics_.particles;
+  std::vector<std::pair<int, int>> links;
+  attraction_.for_each_pair([&](int i, int j) {
+    const double a0 = p.radius[i] + p.radius[j];
+    if (norm(p.position[j] - p.position[i]) < (1 + link_gap) * a0) links.emplace_back(i, j);
+  });
+  return count_clusters(p.size(), links);
+}
+
+Numbers BondedGrains::numbers(const Box<2>& box) const {
+  const auto& particles = dynamics_.particles;
+  int contacts = 0, inner = 0;
+  for (int c = 0; c < dynamics_.contacts.size(); ++c) {
+    if (!(dynamics_.contacts.impulse[c][0] > 0)) continue;
+    ++contacts;
+    inner += dynamics_.contacts.body_b[c] < particles.size() ? 1 : 0;
+  }
+  Numbers numbers{{"contacts", contacts},
+                  {"sigma_I", sigma_I_},
+                  {"z_primaries", 2.0 * inner / particles.size()},
+                  {"clusters", clusters()},
+                  {"attraction_energy", attraction_.energy(particles)},
+                  {"dissipation_rearrangement", work_.dissipation - work_.between}};
+  if (box.closed()) numbers.emplace_back("solid_fraction", solid_fraction(box));
+  return numbers;
+}
+
+Bodies BondedGrains::bodies() const {
+  const auto& p = dynamics_.particles;
+  return {p.mass, {p.velocity.begin(), p.velocity.begin() + p.size()}};
+}
+
+std::vector<Vec<2>> BondedGrains::centres() const {
+  const auto& particles = dynamics_.particles;
+  std::vector<Vec<2>> centre(grain_radius_.size());
+  std::vector<double> mass(grain_radius_.size(), 0);
+  for (int i = 0; i < particles.size(); ++i) {
+    centre[particles.grain[i]] += particles.mass[i] * particles.position[i];
+    mass[particles.grain[i]] += particles.mass[i];
+  }
+  for (std::size_t g = 0; g < centre.size(); ++g) centre[g] *= 1 / mass[g];
+  return centre;
+}
+
+std::vector<ContactPoint> BondedGrains::contacts() const {
+  const auto& particles = dynamics_.particles;
+  const auto& contacts = dynamics_.contacts;
+  const int n = particles.size();
+  std::vector<ContactPoint> points;
+  for (int c = 0; c < contacts.size(); ++c) {
+    const int a = contacts.body_a[c], b = contacts.body_b[c];
+    const bool wall = b >= n;
+    if (!(contacts.impulse[c][0] > 0) || (!wall && particles.grain[a] == particles.grain[b])) continue;
+    const Vec<2>& normal = contacts.normal[c];
+    const Vec<2> impulse = contacts.impulse[c][0] * normal + contacts.impulse[c][1] * perpendicular(normal);
+    points.push_back({.a = particles.grain[a],
+                      .b = wall ? wall_index(b - n) : particles.grain[b],
+                      .force = (1 / impulse_time_) * impulse,
+                      .normal = normal,
+                      .position = particles.position[a] + particles.radius[a] * normal,
+                      // a row of touching primaries: each takes its diameter of the outline
+                      .length = particles.radius[a] + particles.radius[wall ? a : b]});
+  }
+  return points;
+}
+
+Outlines BondedGrains::outlines() const {
+  const auto& particles = dynamics_.particles;
+  Outlines all{.vertex = {}, .begin = {0}, .area = 0};
+  for (const GrainRange& grain : dynamics_.reference.grains) {
+    const auto first = static_cast<std::size_t>(grain.begin), count = grain.end - first;
+    const auto x = std::span(particles.position).subspan(first, count);
+    const auto radius = std::span(particles.radius).subspan(first, count);
+    // the probe is a primary of mean size
+    const double probe = std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(count);
+    const std::vector<Vec<2>> outline = disk_outline(x, radius, probe);
+    all.vertex.insert(all.vertex.end(), outline.begin(), outline.end());
+    all.begin.push_back(static_cast<int>(all.vertex.size()));
+  }
+  all.area = total_area(all.vertex, all.begin);
+  return all;
+}
+
+/// Outlines and grains of a box, primaries and their contacts always.
+Scene BondedGrains::scene(const Box<2>& box) const {
+  const auto& particles = dynamics_.particles;
+  const auto& contacts = dynamics_.contacts;
+  const int n = particles.size();
+  std::vector<double> coordination(n, 0), force;
+  std::vector<std::int64_t> pairs;
+  for (int c = 0; c < contacts.size(); ++c) {
+    if (!(contacts.impulse[c][0] > 0)) continue;
+    const int a = contacts.body_a[c], b = contacts.body_b[c];
+    ++coordination[a];
+    if (b < n) ++coordination[b];
+    pairs.insert(pairs.end(), {a, b});  // from n on: walls
+    force.push_back(contacts.impulse[c][0] / impulse_time_);
+  }
+  Scene scene;
+  scene.particles["position"] = to_array(particles.position);
+  scene.particles["velocity"] = to_array(bodies().velocity);
+  scene.particles["radius"] = {1, particles.radius};
+  scene.particles["pressure"] = {1, primary_pressures(dynamics_, attraction_, grain_radius_, impulse_time_)};
+  scene.particles["coordination"] = {1, std::move(coordination)};
+  scene.contacts["pair"] = {2, std::move(pairs)};
+  scene.contacts["force"] = {1, std::move(force)};
+  if (!box.closed()) return scene;
+  scene.particles["grain"] = {1, std::vector<std::int64_t>(particles.grain.begin(), particles.grain.end())};
+  const Outlines all = outlines();
+  std::vector<std::int64_t> grain_of_vertex;
+  for (std::size_t g = 0; g + 1 < all.begin.size(); ++g)
+    grain_of_vertex.insert(grain_of_vertex.end(), all.begin[g + 1] - all.begin[g],
+                           static_cast<std::int64_t>(g));
+  scene.outlines["position"] = to_array(all.vertex);
+  scene.outlines["grain"] = {1, std::move(grain_of_vertex)};
+  return scene;
+}
+
+std::vector<GrainView> BondedGrains::grains() const {
+  const auto& particles = dynamics_.particles;
+  std::vector<GrainView> views;
+  for (int i = 0; i < particles.size(); ++i) {  // the primaries of a grain lie one after the other
+    if (particles.grain[i] == static_cast<int>(views.size()))
+      views.push_back({.position = {.begin = particles.position[i].c.data()},
+                       .velocity = {.begin = particles.velocity[i].c.data()},
+                       .outline = {}});
+    views.back().velocity.rows = ++views.back().position.rows;
+  }
+  return views;
+}
+
+WallBody BondedGrains::wall_body(const Box<2>& box, double) const {
+  // mass of a sixteenth of a full box; waves of a material as stiff as its bonds, ten times sigma_I
+  const double wave_speed = std::sqrt(10 * sigma_I_ / density_), height = box.height();
+  return {.mass = density_ * height / 16, .damper = density_ * wave_speed, .patience = height / wave_speed};
+}
+
+void BondedGrains::catch_problem() { keeps_problem_ = true; }
+
+SolvedContactProblem BondedGrains::caught_problem(double dt) {
+  keeps_problem_ = false;
+  return problem_of_step(dynamics_, std::move(velocity_start_), dt);
+}
+
+void BondedGrains::visit(StateVisitor& visit) {
+  RigidParticles<2>& particles = dynamics_.particles;
+  NeighbourReference<2>& reference = dynamics_.reference;
+  visit({"position", "m", Owner::body, Role::state, "centres of the primaries"}, particles.position);
+  visit({"velocity", "m/s", Owner::body, Role::state, "velocities of primaries, then walls"},
+        particles.velocity);
+  visit({"spin", "m/s", Owner::body, Role::state, "R omega of primaries, then walls"}, particles.spin);
+  visit({"list_position", "m", Owner::body, Role::list, "where the lists inside grains were made"},
+        reference.position);
+  visit({"list_between", "m", Owner::body, Role::list, "where the list between grains was made"},
+        reference.between);
+  visit({"list_wall_point", "m", Owner::wall, Role::list, "where the walls were then"}, reference.wall_point);
+  visit({"impulse_time", "s", Owner::run, Role::start, "the step over which impulses acted; 0: none was made"},
+        impulse_time_);
+  visit({"work_of_walls", "J/m", Owner::run, Role::sum, "done by the walls"}, work_.walls);
+  visit({"work_dissipated", "J/m", Owner::run, Role::sum, "in all contacts"}, work_.dissipation);
+  visit({"work_dissipated_between", "J/m", Owner::run, Role::sum, "of it between grains and at walls"},
+        work_.between);
+  visit({"work_dissipated_sliding", "J/m", Owner::run, Role::sum, "of that by sliding"}, work_.friction);
+  visit({"energy_start", "J/m", Owner::run, Role::sum, "attraction and motion before the first step"},
+        work_.energy_start);
+  // the lists are a function of their reference, so they come back in the same order
+  if (visit.reads()) {
+    restore_reference(reference, particles, std::move(reference.position), std::move(reference.between),
+                      std::move(reference.wall_point));
+    dynamics_.rebuild_contacts();
+  }
+  visit({"contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t), in the order of the lists"},
+        dynamics_.contacts.impulse);
+}
+
+void BondedGrains::go_on(const Box<2>& box) {
+  dynamics_.particles.walls = box.walls;
+  detect_contacts(dynamics_.particles, dynamics_.contacts);
+  attraction_.update(dynamics_.particles, dynamics_.reference);
+}
+
+}  // namespace softgrain

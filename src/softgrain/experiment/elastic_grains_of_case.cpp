@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <variant>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/experiment/grains_of_case.hpp"
+#include "softgrain/mpm/elastic_grains.hpp"
+#include "softgrain/mpm/lattice_grains.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Of an explicit step: the mesh's own vibrations are damped.
+constexpr double damping_share = 0.5;
+
+/// Of an implicit step: the walls come together by this share of the smallest radius, at most.
+constexpr double way_share = 0.01;
+
+AnyLaw law_of(const Case& c) { return make_law(c.mpm.law, c.mpm.young_modulus, c.mpm.poisson_ratio); }
+
+SoftGrains grains_of(const Case& c, std::vector<GrainPlacement> placed) {
+  return {std::move(placed), law_of(c), c.grain.density};
+}
+
+GrainPlacement placement(const std::shared_ptr<const Topology>& shape, const PlacedGrain& grain) {
+  return {.topology = shape,
+          .radius = grain.radius,
+          .centre = grain.centre,
+          .angle = grain.angle,
+          .velocity = {}};
+}
+
+/// Between walls that meet the circle through its vertices.
+Box<2> box_of_grain(const Case& c, const Topology& shape) {
+  double reach = 0;
+  for (const Vec<2>& X : shape.grid.outline()) reach = std::max(reach, norm(X) * c.grain.radius);
+  return walls_at(-reach, reach);
+}
+
+/// Of Newton's method, so that what it leaves of a stress that is kept is small.
+double tolerance_of(const Case& c, const SoftGrains& grains, double height) {
+  if (c.loading.hold_stress == 0) return c.mpm.tolerance;
+  constexpr double share = 0.01;  // of the stress
+  const double wave = std::visit([&](const auto& law) { return law.wave_speed(grains.density); }, grains.law);
+  const double modulus = grains.density * wave * wave;
+  return std::min(c.mpm.tolerance, share * c.loading.hold_stress / modulus * height / grains.radius(0));
+}
+
+double cell_of(const Case& c) {
+  return c.grain.radius * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;  // 14 cells^2 points, 4 to a cell
+}
+
+bool is_lattice(const Case& c) { return c.mpm.formulation == Formulation::updated_lagrangian; }
+
+/// A cell has the size that gives both formulations 14 cells^2 points.
+PlacedModel lattice_grain_of(const Case& c) {
+  require(!is_in_a_box(c), "mpm.formulation 'updated_lagrangian' needs experiment.loading 'diametral'");
+  const double cell = cell_of(c);
+  PointGrain grain = disk_of_points(c.grain.radius, {}, cell, 8 * c.mpm.cells);
+  double reach = 0;  // the outline is symmetric about both axes
+  for (const Vec<2>& x : grain.outline) reach = std::max(reach, x[1]);
+  Box<2> box = walls_at(-reach, reach);
+  UpdatedLagrangianDynamics dynamics({std::move(grain)}, box.walls, law_of(c), c.grain.density,
+                                     {.shape = c.mpm.shape_functions,
+                                      .contact_on = c.mpm.contact_on,
+                                      .cell = cell,
+                                      .friction = c.contact.friction,
+                                      .wall_friction = c.contact.wall_friction,
+                                      .damping = c.mpm.damping});
+  const double dt = c.mpm.time_step > 0 ? c.mpm.time_step
+                                        : stable_time_step(dynamics.law, dynamics.density, cell);
+  return {std::make_unique<LatticeGrains>(std::move(dynamics)), std::move(box), dt};
+}
+
+PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double smallest_radius) {
+  const double dt =
+      c.mpm.time_step > 0 ? c.mpm.time_step : way_share * smallest_radius / c.loading.wall_velocity;
+  const ImplicitOptions options{.tolerance = tolerance_of(c, grains, box.height()),
+                                .friction = c.contact.friction,
+                                .wall_friction = c.contact.wall_friction,
+                                .damping = c.mpm.damping};
+  ImplicitDynamics dynamics(std::move(grains), box.walls, options);
+  return {std::make_unique<ElasticGrains<ImplicitDynamics>>(std::move(dynamics)), std::move(box), dt};
+}
+
+PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box) {
+  const double dt = c.mpm.time_step > 0 ? c.mpm.time_step : stable_time_step(grains);
+  const ExplicitOptions options{.damping_share = damping_share,
+                                .friction = c.contact.friction,
+                                .wall_friction = c.contact.wall_friction,
+                                .damping = c.mpm.damping};
+  ExplicitDynamics dynamics(std::move(grains), box.walls, options);
+  return {std::make_unique<ElasticGrains<ExplicitDynamics>>(std::move(dynamics)), std::move(box), dt};
+}
+
+}  // namespace
+
+double longest_time_step(const Case& c) {
+  constexpr double no_limit = std::numeric_limits<double>::infinity();
+  if (c.experiment.model != GrainModel::mpm) return no_limit;
+  if (is_lattice(c)) return stable_time_step(law_of(c), c.grain.density, cell_of(c), 0.2 * (1 + 1e-9));
+  if (c.mpm.integrator != Integrator::symplectic_euler) return no_limit;
+  const double radius = is_in_a_box(c) ? c.sample.smallest_diameter / 2 : c.grain.radius;
+  const auto shape = std::make_shared<const Topology>(disk_grid(c.mpm.cells));
+  return longest_stable_step(grains_of(c, {placement(shape, {.centre = {}, .radius = radius, .angle = 0})}),
+                             damping_share);
+}
+
+void check_time_step(const Case& c) {
+  if (c.mpm.time_step == 0 || c.experiment.model != GrainModel::mpm) return;
+  const double longest = longest_time_step(c);
+  require(c.mpm.time_step <= longest,
+          "mpm.time_step {:.4g} us is beyond the longest stable step of an explicit run of this case, "
+          "{:.4g} us; give at most that, or 0 for the default",
+          1e6 * c.mpm.time_step, 1e6 * longest);
+}
+
+PlacedModel elastic_grains_of(const Case& c) {
+  check_time_step(c);
+  if (is_lattice(c)) return lattice_grain_of(c);
+  const auto shape = std::make_shared<const Topology>(disk_grid(c.mpm.cells));
+  std::vector<GrainPlacement> placed;
+  Box<2> box;
+  if (is_in_a_box(c)) {
+    const BoxSample sample = sample_box(c);
+    for (const PlacedGrain& grain : sample.grains) placed.push_back(placement(shape, grain));
+    box = walls_of(sample);
+  } else {
+    placed.push_back(placement(shape, {.centre = {}, .radius = c.grain.radius, .angle = 0}));
+    box = box_of_grain(c, *shape);
+  }
+  double smallest = placed.front().radius;
+  for (const GrainPlacement& grain : placed) smallest = std::min(smallest, grain.radius);
+  SoftGrains grains = grains_of(c, std::move(placed));
+  if (c.mpm.integrator == Integrator::symplectic_euler)
+    return explicit_grains(c, std::move(grains), std::move(box));
+  return implicit_grains(c, std::move(grains), std::move(box), smallest);
+}
+
+}  // namespace softgrain

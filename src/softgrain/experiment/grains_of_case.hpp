@@ -1,0 +1,30 @@
+#pragma once
+#include <memory>
+
+#include "softgrain/experiment/case.hpp"
+#include "softgrain/experiment/sample.hpp"
+#include "softgrain/geometry/box.hpp"
+#include "softgrain/model/model.hpp"
+
+namespace softgrain {
+
+/// Grains of a case in their box, with the time step of the run.
+struct PlacedModel {
+  std::unique_ptr<Model> model;
+  Box<2> box;
+  double time_step = 0;  ///< [s]
+};
+
+/// One grain between two walls, or the grains of a box. Raises UsageError.
+PlacedModel bonded_grains_of(const Case& the_case);
+PlacedModel elastic_grains_of(const Case& the_case);
+
+/// The longest time step [s] with which an explicit run of the case is stable from its start on, with grains
+/// of the smallest radius that it allows; infinite where the integrator or the model has no such limit. While
+/// it runs, cells that become stiffer are followed by sub-steps.
+double longest_time_step(const Case& the_case);
+
+/// Raises UsageError if the case gives a longer one.
+void check_time_step(const Case& the_case);
+
+}  // namespace softgrain

@@ -1,0 +1,114 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "softgrain/contact/contact_problem.hpp"
+#include "softgrain/contact/step_report.hpp"
+#include "softgrain/geometry/box.hpp"
+#include "softgrain/observe/contact_network.hpp"
+#include "softgrain/observe/energy.hpp"
+#include "softgrain/observe/observation.hpp"
+#include "softgrain/state/field.hpp"
+
+namespace softgrain {
+
+/// What can be drawn: disks (primaries, or material points), outlines of grains, walls as segments, and
+/// contacts with their force.
+struct Scene {
+  Arrays particles;  ///< position (n, 2), radius, then any field by primary or point
+  /// pair (m, 2) of particles, walls from n on, in the order of wall_segments; force (m, 1) [N/m], normal.
+  /// With a position (m, 2) [m] of their own the pairs are of grains, not of particles; walls from their
+  /// number on.
+  Arrays contacts;
+  Arrays outlines;  ///< position (v, 2) of the outlines' vertices, grain (v): a new grain, a new polygon
+  std::vector<double> wall_segments;  ///< x0 y0 x1 y1 for each wall [m]
+};
+
+/// Vectors where they lie in memory: component d of row i is begin[i * row + d * component].
+struct VectorView {
+  const double* begin = nullptr;
+  std::size_t rows = 0;
+  std::size_t row = 2, component = 1;
+};
+
+/// One grain where it lies in memory: it follows the steps, and lasts as long as the model.
+struct GrainView {
+  VectorView position;  ///< of primaries, grid nodes or material points [m]
+  VectorView velocity;  ///< theirs [m/s]
+  VectorView outline;   ///< vertices, counter-clockwise [m]; none where only the scene finds them (bpm)
+};
+
+/// Outlines of all grains, one after the other.
+struct Outlines {
+  std::vector<Vec<2>> vertex;  ///< each grain's counter-clockwise [m]
+  std::vector<int> begin;      ///< (grains + 1) first vertex of each grain
+  double area = 0;             ///< of all grains, deformed: sum of A_g [m^2]
+};
+
+/// Bodies that move, whatever they are: primaries, nodes or points.
+struct Bodies {
+  std::vector<double> mass;      ///< [kg/m]
+  std::vector<Vec<2>> velocity;  ///< [m/s]
+};
+
+/// Walls that keep a stress sigma_h are bodies of mass m and damper Z: they come together at the speed v of
+///   m dv/dt = sigma_h + s - sigma - Z v/(1 + t/tau),  ds/dt = (sigma_h - sigma)/(10 tau),
+/// with |v| <= loading.wall_velocity and |s| <= sigma_h/5. While sigma is below sigma_h/2 t grows, and walls
+/// that touch nothing speed up; above, it falls within tau/4.
+struct WallBody {
+  double mass = 0;      ///< m, over the area of a wall [kg/m^2]; 0: v is sought where sigma + Z v = sigma_h
+  double damper = 0;    ///< Z, over the area of a wall [Pa s/m]
+  double patience = 1;  ///< tau [s]
+};
+
+/// Grains in a box, however they are modelled. A model knows no case, no path, no row and no file.
+class Model {
+ public:
+  virtual ~Model() = default;
+  virtual std::unique_ptr<Model> copy() const = 0;
+
+  /// One step of dt [s]; the walls of the box move by dt times their velocity and get the impulses that they
+  /// felt. Raises NumericalError where the state is not finite or no solution is found.
+  virtual StepReport step(Box<2>& box, double dt) = 0;
+  /// After a step: true if no smaller box holds the grains. Raises NumericalError where its overlaps show that
+  /// the step has no solution.
+  virtual bool is_exhausted(const StepReport&, const Box<2>&) const { return false; }
+  /// Why no smaller box holds them, for the user.
+  virtual std::string exhaustion(const Box<2>&) const { return ""; }
+
+  /// All that the next step depends on but the box.
+  virtual void visit(StateVisitor& visit) = 0;
+  /// After a visitor has read the state: with this box the model is as if it had never stopped, bit for bit.
+  virtual void go_on(const Box<2>&) {}
+  /// Sums since the last row begin again.
+  virtual void begin_row() {}
+
+  virtual double density() const = 0;                   ///< of the grains [kg/m^3]
+  virtual std::vector<double> radii() const = 0;        ///< of the undeformed grains [m]
+  virtual std::vector<Vec<2>> centres() const = 0;      ///< of mass, of the grains [m]
+  virtual Bodies bodies() const = 0;
+  virtual std::vector<ContactPoint> contacts() const = 0;  ///< that carry impulse, of the last step
+  virtual Outlines outlines() const = 0;
+  virtual std::pair<double, double> extent() const = 0;  ///< least and largest x of the grains [m]
+  virtual Energies energies() const = 0;
+  /// What only this model knows, by the names of its columns.
+  virtual Numbers numbers(const Box<2>& box) const = 0;
+  /// Points, contacts and outlines; of walls without sides the x from which to which they are drawn.
+  virtual Scene scene(const Box<2>& box) const = 0;
+  virtual std::pair<double, double> reach() const = 0;
+  virtual std::vector<GrainView> grains() const = 0;
+
+  virtual WallBody wall_body(const Box<2>&, double) const { return {}; }
+
+  /// Keeps the contact problem of the next step, with its impulses per metre of depth; where a step solves
+  /// several, the last. Raises UsageError where no such problem can be had.
+  virtual void catch_problem();
+  /// That was kept.
+  virtual SolvedContactProblem caught_problem(double dt);
+};
+
+}  // namespace softgrain

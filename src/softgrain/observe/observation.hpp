@@ -1,0 +1,45 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "softgrain/observe/energy.hpp"
+#include "softgrain/observe/packing_measures.hpp"
+
+namespace softgrain {
+
+/// Numbers by the names of their columns.
+using Numbers = std::vector<std::pair<std::string_view, double>>;
+
+/// What the steps since the last row took: means over them, and maxima.
+struct StepMeans {
+  double sweeps = 0;
+  double residual_mean = 0, residual_max = 0;
+  double overlap_mean = 0, overlap_max = 0;
+  double wall_seconds = 0;  ///< since the run began [s]
+};
+
+/// All that a row of series.csv is made of.
+struct Observation {
+  std::int64_t step = 0;
+  double time = 0;  ///< [s]
+  double strain = 0;
+  int leg = 0;
+  double height = 0, width = 0;     ///< of the box, or the grain's width [m]
+  std::vector<double> wall_force;   ///< outwards, by BoxWall, mean since the last row [N/m]
+  std::optional<PackingMeasures> packing;  ///< of a closed box
+  Energies energies;
+  Numbers numbers;  ///< of the model alone
+  std::optional<StepMeans> means;
+
+  std::optional<double> number(std::string_view name) const {
+    for (const auto& [of, value] : numbers)
+      if (of == name) return value;
+    return std::nullopt;
+  }
+};
+
+}  // namespace softgrain
