@@ -34,6 +34,28 @@ struct Narrow {
   Narrow& operator-=(const Narrow& b) { return lanes -= b.lanes, *this; }
 };
 
+inline Narrow::Floats max(Narrow::Floats a, Narrow::Floats b) { return a > b ? a : b; }  // b if one is NaN
+inline Narrow::Floats min(Narrow::Floats a, Narrow::Floats b) { return a < b ? a : b; }
+inline Narrow::Floats select(decltype(Narrow::Floats{} < Narrow::Floats{}) mask, Narrow::Floats a,
+                             Narrow::Floats b) {
+  return mask ? a : b;
+}
+
+/// How many numbers a T holds, and one of them.
+template <class T>
+inline constexpr int lanes_of = T::size;
+template <>
+inline constexpr int lanes_of<double> = 1;
+template <>
+inline constexpr int lanes_of<Lanes> = lane_count;
+template <>
+inline constexpr int lanes_of<Narrow::Floats> = Wide::size;
+template <class T>
+inline double lane_of(const T& numbers, int lane) {
+  return numbers[lane];
+}
+inline double lane_of(double number, int /*lane*/) { return number; }
+
 inline Narrow operator+(const Narrow& a, const Narrow& b) { return Narrow(a.lanes + b.lanes); }
 inline Narrow operator-(const Narrow& a, const Narrow& b) { return Narrow(a.lanes - b.lanes); }
 inline Narrow operator*(const Narrow& a, const Narrow& b) { return Narrow(a.lanes * b.lanes); }
