@@ -1,6 +1,7 @@
 #pragma once
 #include <cmath>
 
+#include "softgrain/core/processor.hpp"
 #include "softgrain/math/wide.hpp"
 
 namespace softgrain {
@@ -63,7 +64,7 @@ inline Narrow operator/(const Narrow& a, const Narrow& b) { return Narrow(a.lane
 
 /// c - a b. Of Narrow with one rounding, always: the same bits from every compiler, for half the work.
 inline Narrow minus_product(const Narrow& c, const Narrow& a, const Narrow& b) {
-  return Narrow(__builtin_ia32_vfmaddps256(-a.lanes, b.lanes, c.lanes));
+  return Narrow(fused_multiply_add(-a.lanes, b.lanes, c.lanes));
 }
 inline Wide minus_product(const Wide& c, const Wide& a, const Wide& b) { return c - a * b; }
 
