@@ -6,5 +6,10 @@ if(SOFTGRAIN_WARNINGS_AS_ERRORS)
   list(APPEND warnings -Werror)
 endif()
 # Who uses an installed softgrain has warnings of their own, but the same numbers.
-target_compile_options(softgrain_options INTERFACE "$<BUILD_INTERFACE:${warnings}>" -ffp-contract=off -march=${SOFTGRAIN_ARCH})
+target_compile_options(softgrain_options INTERFACE "$<BUILD_INTERFACE:${warnings}>" -ffp-contract=off)
+if(SOFTGRAIN_ARCH)
+  target_compile_options(softgrain_options INTERFACE -march=${SOFTGRAIN_ARCH})
+endif()
+# Vectors of 32 bytes as arguments: one set of flags for all, so no other ABI can meet ours.
+target_compile_options(softgrain_options INTERFACE -Wno-psabi)
 find_package(Threads REQUIRED)
