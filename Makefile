@@ -19,7 +19,7 @@ test: ## builds with warnings as errors and runs all tests
 	cmake --build --preset dev
 	ctest --preset dev
 
-check: ## format, layers, self-contained headers, links of the documentation, clang-tidy
+check: ## format, layers, self-contained headers, the library for the browser, links of the documentation, clang-tidy
 	@tools/install_dependencies.sh --with checks --with docs
 	cmake --preset dev
 	tools/check_format
@@ -27,6 +27,7 @@ check: ## format, layers, self-contained headers, links of the documentation, cl
 	tools/check_layers
 	tools/check_headers
 	tools/check_viewer
+	tools/check_wasm
 	tools/build_site
 	tools/check_tidy
 
@@ -34,7 +35,7 @@ docs: ## the documentation as a site, build/site/index.html, with every link che
 	@tools/install_dependencies.sh --with docs
 	tools/build_site
 
-torture: ## long forms of the reliability tests, fuzzers, sanitizers, builds compared (hours)
+torture: ## long forms of the reliability tests, fuzzers, sanitizers, builds compared, 64-bit ARM (hours)
 	@tools/install_dependencies.sh --with torture
 	cmake --preset dev
 	cmake --build --preset dev
@@ -43,6 +44,9 @@ torture: ## long forms of the reliability tests, fuzzers, sanitizers, builds com
 	cmake --build --preset fuzz
 	tests/fuzz/run
 	tools/compare_builds
+	cmake --preset aarch64
+	cmake --build --preset aarch64
+	ctest --preset aarch64 -L portable
 	cmake --preset asan
 	cmake --build --preset asan
 	ctest --preset asan -L "unit|verification" --timeout 7200

@@ -1,4 +1,17 @@
 # Each dependency is explained in docs/decisions/0002-dependencies.md and installed by tools/install_dependencies.sh.
+if(NOT SOFTGRAIN_IO)
+  # Headers alone, which serve every processor; links, so that a cross compiler sees nothing else of this system.
+  foreach(header fmt/core.h doctest/doctest.h Eigen/Dense)
+    get_filename_component(folder ${header} DIRECTORY)
+    find_path(${folder}_headers ${header} PATHS /usr/include PATH_SUFFIXES eigen3 REQUIRED NO_CMAKE_FIND_ROOT_PATH)
+    file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/headers")
+    file(CREATE_LINK "${${folder}_headers}/${folder}" "${PROJECT_BINARY_DIR}/headers/${folder}" SYMBOLIC)
+  endforeach()
+  add_library(fmt::fmt INTERFACE IMPORTED)
+  target_compile_definitions(fmt::fmt INTERFACE FMT_HEADER_ONLY)
+  target_include_directories(fmt::fmt SYSTEM INTERFACE "${PROJECT_BINARY_DIR}/headers")
+  return()
+endif()
 find_package(fmt REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(CLI11 REQUIRED)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that softgrain needs; the only place that names them. Does nothing when all are there.
-#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, bench, peers, viewer, torture, cluster, shells, paraview, clang
+#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, bench, peers, viewer, torture, cluster, shells, paraview, clang, wasm
 #   tools/install_dependencies.sh --list                 the table below
 # Why each was chosen: docs/decisions/0002-dependencies.md
 set -euo pipefail
@@ -48,6 +48,9 @@ viewer     npm                     tools/check_viewer
 torture    tmux                    a real terminal for the test of signals
 torture    clang                   libFuzzer
 torture    libclang-rt-dev         its sanitizers
+torture    g++-aarch64-linux-gnu   the library for 64-bit ARM
+torture    qemu-user               runs its tests here
+wasm       emscripten              the library for the browser, 0.6 GB
 cluster    slurm-wlm               a Slurm of one node for the test of sweeps
 cluster    munge                   its authentication
 shells     zsh                     tries its completion
@@ -64,7 +67,7 @@ groups="build libraries python tests pictures"
 while (($#)); do
   case "$1" in
     --list) table && exit 0 ;;
-    --with) groups+=" ${2:?--with needs a group: checks, docs, bench, peers, viewer, torture, cluster, shells, paraview or clang}" && shift 2 ;;
+    --with) groups+=" ${2:?--with needs a group: checks, docs, bench, peers, viewer, torture, cluster, shells, paraview, clang or wasm}" && shift 2 ;;
     *) sed -n '2,4s/^# //p' "$0" >&2 && exit 2 ;;
   esac
 done

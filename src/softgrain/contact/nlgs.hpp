@@ -4,6 +4,7 @@
 #include <span>
 
 #include "softgrain/contact/contact_system.hpp"
+#include "softgrain/contact/law.hpp"
 #include "softgrain/contact/residual.hpp"
 #include "softgrain/contact/signorini_coulomb.hpp"
 #include "softgrain/contact/solver_options.hpp"
@@ -27,10 +28,8 @@ void nlgs_update(System& system, int c, Vec<Dim>& p, double mu, double relaxatio
   if (u[0] >= 0 && p == Vec<Dim>{}) return;  // open, and it stays so
   const Mat<Dim> W = system.delassus_block(c);
   const Vec<Dim> solved = solve_signorini_coulomb(W, u - W * p, mu);
-  const Vec<Dim> jump = W * (solved - p);
-  violation.add(dot(jump, jump), solved[0] > 0);
-  Vec<Dim> next = p + relaxation * (solved - p);
-  if (relaxation > 1) next = project_on_coulomb_cone(next, mu);
+  violation.add(W * (solved - p), solved[0]);
+  const Vec<Dim> next = relaxed_impulse(p, solved, mu, relaxation);
   const Vec<Dim> dp = next - p;
   if (dp == Vec<Dim>{}) return;
   p = next;

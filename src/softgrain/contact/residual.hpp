@@ -5,34 +5,11 @@
 #include <span>
 
 #include "softgrain/contact/contact_system.hpp"
-#include "softgrain/contact/signorini_coulomb.hpp"
+#include "softgrain/contact/law.hpp"
 #include "softgrain/contact/solver_options.hpp"
 #include "softgrain/math/vec.hpp"
 
 namespace softgrain {
-
-/// How far contacts are from their law. The violation of a contact is the jump of its velocity when its own
-/// impulse alone puts it right, v_c = |W_cc (p_c' - p_c)| [m/s]: zero exactly where the law holds, whatever
-/// the conditioning of W_cc. Without friction v_c = |min(W_nn p_n, u_n)|.
-struct Violation {
-  double sum_of_squares = 0;  ///< of v_c [m^2/s^2]; NaN once a contact is
-  double max_square = 0;      ///< of v_c [m^2/s^2]
-  int contacts = 0;           ///< those that carry impulse or are violated
-
-  /// Counts a contact by its v_c^2 and whether it carries impulse once put right.
-  void add(double square, bool carries_impulse) {
-    if (!carries_impulse && square == 0) return;
-    sum_of_squares += square;
-    max_square = std::max(max_square, square);
-    ++contacts;
-  }
-  Violation& operator+=(const Violation& more) {
-    sum_of_squares += more.sum_of_squares;
-    max_square = std::max(max_square, more.max_square);
-    contacts += more.contacts;
-    return *this;
-  }
-};
 
 /// Root mean square over contacts of the velocity that the others give, u_c - W_cc p_c [m/s]; from p = 0 that
 /// of q. 1 when nothing moves.

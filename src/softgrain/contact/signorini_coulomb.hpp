@@ -3,22 +3,10 @@
 #include <cmath>
 #include <utility>
 
+#include "softgrain/contact/law.hpp"
 #include "softgrain/math/vec.hpp"
 
 namespace softgrain {
-
-/// Projection of p on the Coulomb cone |p_t| <= mu p_n.
-template <int Dim>
-Vec<Dim> project_on_coulomb_cone(Vec<Dim> p, double mu) {
-  double tangential = 0;
-  for (int k = 1; k < Dim; ++k) tangential += p[k] * p[k];
-  tangential = std::sqrt(tangential);
-  if (p[0] >= 0 && tangential <= mu * p[0]) return p;
-  const double normal = std::max(0.0, (p[0] + mu * tangential) / (1 + mu * mu));
-  p[0] = normal;
-  for (int k = 1; k < Dim; ++k) p[k] *= tangential > 0 ? mu * normal / tangential : 0;
-  return p;
-}
 
 namespace detail {
 

@@ -4,9 +4,16 @@
 #include <atomic>
 #include <cstdint>
 #include <cstdlib>
+#include <exception>
+#include <limits>
 #include <memory>
+#include <mutex>
+#include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
+
+#include "softgrain/core/processor.hpp"
 
 namespace softgrain {
 namespace {
@@ -19,14 +26,59 @@ constexpr int looks_before_sleep = 2000;
 /// items of half a microsecond, enough that no thread waits long for the last.
 constexpr int turns_per_thread = 16;
 
-inline void pause() { __builtin_ia32_pause(); }
+/// The items of one loop. Threads take turns of them in the order of their index until none is left.
+class Loop {
+ public:
+  Loop(int count, int threads, detail::LoopBody body, const void* work)
+      : count_(count), turn_(std::max(1, count / (turns_per_thread * threads))), body_(body), work_(work) {}
+
+  /// Throws nothing. An item that throws ends its turn, and no turn behind it begins.
+  void take_turns() noexcept {
+    for (int begin; (begin = next_.fetch_add(turn_, std::memory_order_relaxed)) < count_;) {
+      if (begin > failed_.load(std::memory_order_relaxed)) return;
+      int i = begin;
+      try {
+        for (; i < std::min(count_, begin + turn_); ++i) body_(work_, i);
+      } catch (...) {
+        keep(i, std::current_exception());
+      }
+    }
+  }
+
+  /// After all turns. All items before the first that threw have been worked on, so that it is the same one
+  /// on any number of threads.
+  void rethrow() {
+    if (error_ != nullptr) std::rethrow_exception(std::exchange(error_, nullptr));
+  }
+
+ private:
+  void keep(int item, std::exception_ptr error) {
+    const std::lock_guard lock(keeping_);
+    if (item >= failed_) return;
+    failed_ = item;
+    error_ = std::move(error);
+  }
+
+  std::atomic<int> next_{0};
+  std::atomic<int> failed_{std::numeric_limits<int>::max()};  // the first item that threw
+  int count_, turn_;                                          // items of the loop, and of a turn
+  detail::LoopBody body_;
+  const void* work_;
+  std::mutex keeping_;
+  std::exception_ptr error_;
+};
 
 /// Threads that wait for loops. One word says all: whether a loop is open, how many helpers are inside it,
 /// and the number of the loop, so that a helper never enters one that has ended.
 class Team {
  public:
-  explicit Team(int helpers) {
-    for (int k = 0; k < helpers; ++k) helpers_.emplace_back([this] { help(); });
+  /// With fewer helpers where the system gives no more threads.
+  explicit Team(int helpers) : wanted_(helpers) {
+    helpers_.reserve(helpers);
+    try {
+      for (int k = 0; k < helpers; ++k) helpers_.emplace_back([this] { help(); });
+    } catch (const std::system_error&) {
+    }
   }
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
@@ -37,15 +89,13 @@ class Team {
     for (std::thread& helper : helpers_) helper.join();
   }
 
-  int size() const { return 1 + static_cast<int>(helpers_.size()); }
+  int wanted() const { return wanted_; }
 
-  void run(int count, detail::LoopBody body, const void* work) {
-    count_ = count, body_ = body, work_ = work;
-    turn_ = std::max(1, count / (turns_per_thread * size()));
-    next_.store(0, std::memory_order_relaxed);
+  void run(Loop& loop) {
+    loop_ = &loop;
     state_.fetch_add(one_loop + open);
     state_.notify_all();
-    take_turns();
+    loop.take_turns();
     // no helper comes in any more; those that are inside finish the turn that they hold
     for (std::uint32_t state = state_.fetch_sub(open) - open; inside(state) != 0; state = state_.load())
       wait_while(state);
@@ -57,14 +107,9 @@ class Team {
   static bool is_open(std::uint32_t state) { return (state & open) != 0; }
 
   void wait_while(std::uint32_t state) {
-    for (int look = 0; look < looks_before_sleep; ++look, pause())
+    for (int look = 0; look < looks_before_sleep; ++look, spin_pause())
       if (state_.load(std::memory_order_relaxed) != state) return;
     state_.wait(state);
-  }
-
-  void take_turns() {
-    for (int begin; (begin = next_.fetch_add(turn_, std::memory_order_relaxed)) < count_;)
-      for (int i = begin; i < std::min(count_, begin + turn_); ++i) body_(work_, i);
   }
 
   void help() {
@@ -77,7 +122,7 @@ class Team {
         continue;
       }
       if (!state_.compare_exchange_strong(state, state + one_helper)) continue;
-      take_turns();
+      loop_->take_turns();
       done = state / one_loop;
       state_.fetch_sub(one_helper);
       state_.notify_all();
@@ -85,11 +130,9 @@ class Team {
   }
 
   std::atomic<std::uint32_t> state_{0};
-  std::atomic<int> next_{0};
   std::atomic<bool> ending_{false};
-  int count_ = 0, turn_ = 1;  // items of a loop, and of a turn
-  detail::LoopBody body_ = nullptr;
-  const void* work_ = nullptr;
+  Loop* loop_ = nullptr;
+  int wanted_;
   std::vector<std::thread> helpers_;
 };
 
@@ -102,11 +145,31 @@ int& wanted_threads() {
   return count;
 }
 
+RunTasks& host() {
+  static RunTasks run;
+  return run;
+}
+
+/// The threads of this file.
+Team& own_team() {
+  static std::unique_ptr<Team> team;
+  if (team == nullptr || team->wanted() != threads() - 1) {
+    team.reset();
+    team = std::make_unique<Team>(threads() - 1);
+  }
+  return *team;
+}
+
 }  // namespace
 
 void set_threads(int count) { wanted_threads() = std::clamp(count, 1, 1024); }
 
 int threads() { return wanted_threads(); }
+
+void set_host_threads(int count, RunTasks run) {
+  set_threads(count);
+  host() = std::move(run);
+}
 
 void detail::run_loop(int count, LoopBody body, const void* work) {
   static std::atomic_flag busy;  // by another simulation of this process, or a loop around this one
@@ -114,13 +177,15 @@ void detail::run_loop(int count, LoopBody body, const void* work) {
     for (int i = 0; i < count; ++i) body(work, i);
     return;
   }
-  static std::unique_ptr<Team> team;
-  if (team == nullptr || team->size() != threads()) {
-    team.reset();
-    team = std::make_unique<Team>(threads() - 1);
-  }
-  team->run(count, body, work);
-  busy.clear();
+  struct Release {
+    ~Release() { busy.clear(); }
+  } const release;
+  Loop loop(count, threads(), body, work);
+  if (host())
+    host()(threads(), [&loop](int) { loop.take_turns(); });
+  else
+    own_team().run(loop);
+  loop.rethrow();
 }
 
 }  // namespace softgrain

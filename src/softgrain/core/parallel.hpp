@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <functional>
 #include <vector>
 
 namespace softgrain {
@@ -11,6 +12,15 @@ void set_threads(int count);
 /// process may use.
 int threads();
 
+/// Runs task(k) for k = 0 .. count - 1, each once and at the same time as far as it can, and returns when all
+/// are done. The tasks throw nothing; this must throw nothing once it has begun one.
+using RunTasks = std::function<void(int count, const std::function<void(int k)>& task)>;
+
+/// Parallel loops use the threads of a host program from now on: each loop hands `count` tasks to `run`, and
+/// whichever tasks run share its items, so that none waits for another to begin. Results have the same bits
+/// as with threads of our own, to which an empty `run` goes back. Not during a loop.
+void set_host_threads(int count, RunTasks run);
+
 namespace detail {
 
 using LoopBody = void (*)(const void* work, int i);
@@ -20,9 +30,12 @@ void run_loop(int count, LoopBody body, const void* work);
 
 }  // namespace detail
 
-/// work(i) for i = 0 .. count - 1, in any order, on all threads; each must write its own data only and
-/// throw nothing. Results do not depend on the number of threads. A loop inside a loop, or beside one of
-/// another thread, runs on its own thread alone.
+/// work(i) for i = 0 .. count - 1, in any order, on all threads; each must write its own data only. Results
+/// do not depend on the number of threads. A loop inside a loop, or beside one of another thread, runs on its
+/// own thread alone.
+///
+/// If items throw, the caller gets the exception of the first of them by index, the one that a plain loop
+/// would meet, when all threads have left the loop. All items before it are done, some behind it may be.
 ///
 /// A thread that is late is not waited for: the others take its share (docs/decisions/0016).
 template <class Work>

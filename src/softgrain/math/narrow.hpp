@@ -1,6 +1,7 @@
 #pragma once
 #include <cmath>
 
+#include "softgrain/core/processor.hpp"
 #include "softgrain/math/precision.hpp"
 #include "softgrain/math/wide.hpp"
 
@@ -33,6 +34,28 @@ struct Narrow {
   Narrow& operator-=(const Narrow& b) { return lanes -= b.lanes, *this; }
 };
 
+inline Narrow::Floats max(Narrow::Floats a, Narrow::Floats b) { return a > b ? a : b; }  // b if one is NaN
+inline Narrow::Floats min(Narrow::Floats a, Narrow::Floats b) { return a < b ? a : b; }
+inline Narrow::Floats select(decltype(Narrow::Floats{} < Narrow::Floats{}) mask, Narrow::Floats a,
+                             Narrow::Floats b) {
+  return mask ? a : b;
+}
+
+/// How many numbers a T holds, and one of them.
+template <class T>
+inline constexpr int lanes_of = T::size;
+template <>
+inline constexpr int lanes_of<double> = 1;
+template <>
+inline constexpr int lanes_of<Lanes> = lane_count;
+template <>
+inline constexpr int lanes_of<Narrow::Floats> = Wide::size;
+template <class T>
+inline double lane_of(const T& numbers, int lane) {
+  return numbers[lane];
+}
+inline double lane_of(double number, int /*lane*/) { return number; }
+
 inline Narrow operator+(const Narrow& a, const Narrow& b) { return Narrow(a.lanes + b.lanes); }
 inline Narrow operator-(const Narrow& a, const Narrow& b) { return Narrow(a.lanes - b.lanes); }
 inline Narrow operator*(const Narrow& a, const Narrow& b) { return Narrow(a.lanes * b.lanes); }
@@ -40,7 +63,7 @@ inline Narrow operator/(const Narrow& a, const Narrow& b) { return Narrow(a.lane
 
 /// c - a b. Of Narrow with one rounding, always: the same bits from every compiler, for half the work.
 inline Narrow minus_product(const Narrow& c, const Narrow& a, const Narrow& b) {
-  return Narrow(__builtin_ia32_vfmaddps256(-a.lanes, b.lanes, c.lanes));
+  return Narrow(fused_multiply_add(-a.lanes, b.lanes, c.lanes));
 }
 inline Wide minus_product(const Wide& c, const Wide& a, const Wide& b) { return c - a * b; }
 

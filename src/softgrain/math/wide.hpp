@@ -77,6 +77,7 @@ inline Wide select(const WideMask& mask, const Wide& a, const Wide& b) {
   return {mask.low ? a.low : b.low, mask.high ? a.high : b.high};
 }
 inline double select(bool mask, double a, double b) { return mask ? a : b; }
+inline Lanes select(decltype(Lanes{} < Lanes{}) mask, Lanes a, Lanes b) { return mask ? a : b; }
 
 inline Wide max(const Wide& a, const Wide& b) { return {max(a.low, b.low), max(a.high, b.high)}; }
 inline Wide min(const Wide& a, const Wide& b) { return {min(a.low, b.low), min(a.high, b.high)}; }

@@ -1,7 +1,6 @@
 #include "softgrain/mpm/lumped_contacts.hpp"
 
-#include <algorithm>
-
+#include "softgrain/contact/law.hpp"
 #include "softgrain/core/parallel.hpp"
 
 namespace softgrain {
@@ -89,13 +88,10 @@ inline void LumpedContacts::solve(const Row& row, Vec<2>& p, double friction, co
                                   Violation& violation) {
   const Vec<2> u = relative_velocity(row);
   if (p[0] == 0 && u[0] >= 0) return;
-  Vec<2> solved{std::max(0.0, p[0] - u[0] * row.inverse_delassus), 0};
-  if (const double most = friction * solved[0]; most > 0)
-    solved[1] = std::clamp(p[1] - u[1] * row.inverse_delassus, -most, most);
-  const Vec<2> jump = row.delassus * (solved - p);
-  violation.add(dot(jump, jump), solved[0] > 0);
-  Vec<2> next = p + options.relaxation * (solved - p);
-  if (options.relaxation > 1) next = project_on_coulomb_cone(next, friction);
+  const double gain = row.inverse_delassus;
+  const Vec<2> solved = solve_uncoupled(p, u, gain, gain, friction);
+  violation.add(row.delassus * (solved - p), solved[0]);
+  const Vec<2> next = relaxed_impulse(p, solved, friction, options.relaxation);
   const Vec<2> dp = next - p;
   p = next;
   apply_impulse(row, dp);

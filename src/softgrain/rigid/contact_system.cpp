@@ -1,6 +1,5 @@
 #include "softgrain/rigid/contact_system.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "softgrain/math/lanes.hpp"
@@ -101,45 +100,33 @@ void RigidContactSystem<Dim>::apply_impulse(int contact, const Vec<Dim>& dp) {
 
 template <int Dim>
 void RigidContactSystem<Dim>::relax_contact(int contact, Vec<Dim>& impulse, double friction,
-                                            double relaxation, Violation& violation) {
-  const Vec<Dim> u = relative_velocity(contact);
+                                            double relaxation, LaneViolation<double>& violation) {
   const double gain = relaxation * contacts_.inverse_delassus[contact];
-  Vec<Dim> p;
-  p[0] = std::max(0.0, impulse[0] - gain * u[0]);  // p_n <- max(0, p_n - omega u_n / W_nn)
-  double length = 0;
-  for (int k = 1; k < Dim; ++k) {
-    p[k] = impulse[k] - gain / (1 + particles_.inertia_ratio) * u[k];  // p_t <- p_t - omega u_t / W_tt
-    length += p[k] * p[k];
-  }
-  length = std::sqrt(length);
-  const double limit = friction * p[0];  // |p_t| <= mu p_n
-  if (length > limit)
-    for (int k = 1; k < Dim; ++k) p[k] *= limit / length;
-  const Vec<Dim> dp = p - impulse;
-  impulse = p;
+  const Vec<Dim> solved = solve_uncoupled(impulse, relative_velocity(contact), gain,
+                                          gain / (1 + particles_.inertia_ratio), friction);
+  const Vec<Dim> dp = solved - impulse;
+  impulse = solved;
   apply_impulse(contact, dp);
-  double square = dp[0] * dp[0];
-  for (int k = 1; k < Dim; ++k)
-    square += (1 + particles_.inertia_ratio) * (1 + particles_.inertia_ratio) * dp[k] * dp[k];
-  violation.add(square / (gain * gain), p[0] > 0);
+  violation.add(delassus_block(contact) * dp, solved[0]);
 }
 
 template <int Dim>
 Violation RigidContactSystem<Dim>::sweep_block(int block, std::span<Vec<Dim>> impulse,
                                                std::span<const double> friction, double relaxation) {
   Violation violation;
+  LaneViolation<double> one_by_one;
   const ContactBlock& contacts = contacts_.blocks[block];
   for (const ContactBatch* batch : {&contacts.frictionless, &contacts.frictional}) {
     int c = batch->begin;
     if constexpr (Dim == 2) {
       if (c < batch->fours_end)
-        sweep_fours({particles_, contacts_, offset_, impulse, friction, relaxation}, *batch,
-                    batch == &contacts.frictional, violation);
+        violation += sweep_fours({particles_, contacts_, offset_, impulse, friction, relaxation}, *batch,
+                                 batch == &contacts.frictional);
       c = batch->fours_end;
     }
-    for (; c < batch->end; ++c) relax_contact(c, impulse[c], friction[c], relaxation, violation);
+    for (; c < batch->end; ++c) relax_contact(c, impulse[c], friction[c], relaxation, one_by_one);
   }
-  return violation;
+  return violation += one_by_one.total(relaxation);
 }
 
 template <int Dim>

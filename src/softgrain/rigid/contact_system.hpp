@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "softgrain/contact/contact_system.hpp"
-#include "softgrain/contact/residual.hpp"
+#include "softgrain/contact/law.hpp"
 #include "softgrain/contact/solver_options.hpp"
 #include "softgrain/rigid/activation.hpp"
 #include "softgrain/rigid/contacts.hpp"
@@ -69,7 +69,7 @@ class RigidContactSystem {
  private:
   /// One contact of the sweep, for those that do not fill four lanes, and for spheres.
   void relax_contact(int contact, Vec<Dim>& impulse, double friction, double relaxation,
-                     Violation& violation);
+                     LaneViolation<double>& violation);
 
   Violation sweep_block(int block, std::span<Vec<Dim>> impulse, std::span<const double> friction,
                         double relaxation);

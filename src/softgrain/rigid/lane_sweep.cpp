@@ -1,32 +1,9 @@
 #include "softgrain/rigid/lane_sweep.hpp"
 
-#include <algorithm>
-
 #include "softgrain/math/lanes.hpp"
 
 namespace softgrain {
 namespace {
-
-/// Sums over the lanes of what Violation counts.
-struct LaneViolation {
-  Lanes sum = splat(0), max = splat(0), contacts = splat(0);
-
-  void add(Lanes square, Lanes p_n) {
-    sum += square;
-    max = square <= max ? max : square;  // keeps NaN
-    contacts += ((p_n > 0) | (square > 0)) ? splat(1) : splat(0);
-  }
-  /// v_c = W dp / omega: what the contact would jump without relaxation.
-  void add_to(Violation& violation, double relaxation) const {
-    const double scale = 1 / (relaxation * relaxation);
-    violation.sum_of_squares += scale * horizontal_sum(sum);
-    for (int lane = 0; lane < lane_count; ++lane) {
-      const double square = scale * max[lane];
-      violation.max_square = square <= violation.max_square ? violation.max_square : square;
-    }
-    violation.contacts += static_cast<int>(horizontal_sum(contacts));
-  }
-};
 
 /// Velocities of the bodies a and b of four contacts, and the impulses that change them.
 struct BodyLanes {
@@ -51,9 +28,9 @@ struct BodyLanes {
 };
 
 /// Per contact: reads 72 B of contact and 32 B of velocities, writes 16 B and 32 B.
-LaneViolation sweep_frictionless(const SweepData& data, const ContactBatch& batch) {
+LaneViolation<Lanes> sweep_frictionless(const SweepData& data, const ContactBatch& batch) {
   const auto& [particles, contacts, offset, impulse, friction, relaxation] = data;
-  LaneViolation violation;
+  LaneViolation<Lanes> violation;
   for (int c = batch.begin; c < batch.fours_end; c += lane_count) {
     BodyLanes bodies(particles.velocity.data(), contacts, c);
     const LaneColumns n = load_columns(&contacts.normal[c]);
@@ -64,14 +41,12 @@ LaneViolation sweep_frictionless(const SweepData& data, const ContactBatch& batc
     // u_n = n . (v_b - v_a) + q_n
     const Lanes u_n =
         n.x * (bodies.v_b.x - bodies.v_a.x) + n.y * (bodies.v_b.y - bodies.v_a.y) + load_lanes(&offset[c]);
-    // p_n <- max(0, p_n - omega u_n / W_nn)
-    const Lanes p_n = max(p.x - gain * u_n, splat(0));
+    const Lanes p_n = normal_impulse(p.x, u_n, gain);
     const Lanes dp = p_n - p.x;
     p.x = p_n;
     store_columns(p, &impulse[c]);
     bodies.apply({dp * n.x, dp * n.y}, inverse_a, inverse_b);
-    const Lanes v = dp * (inverse_a + inverse_b);
-    violation.add(v * v, p_n);
+    violation.add(Vec<1, Lanes>{dp * (inverse_a + inverse_b)}, p_n);
   }
   return violation;
 }
@@ -84,9 +59,9 @@ void scatter_spin(Lanes lanes, Spin<2>* spin, const int* index) {
 }
 
 /// Per contact: reads 80 B of contact and 48 B of velocities and spins, writes 16 B and 48 B.
-LaneViolation sweep_frictional(const SweepData& data, const ContactBatch& batch) {
+LaneViolation<Lanes> sweep_frictional(const SweepData& data, const ContactBatch& batch) {
   const auto& [particles, contacts, offset, impulse, friction, relaxation] = data;
-  LaneViolation violation;
+  LaneViolation<Lanes> violation;
   const double kappa = particles.inertia_ratio;
   Spin<2>* spin = particles.spin.data();
   for (int c = batch.begin; c < batch.fours_end; c += lane_count) {
@@ -97,33 +72,30 @@ LaneViolation sweep_frictional(const SweepData& data, const ContactBatch& batch)
     const Lanes inverse_a = load_lanes(&contacts.inverse_mass_a[c]),
                 inverse_b = load_lanes(&contacts.inverse_mass_b[c]);
     const Lanes gain = relaxation * load_lanes(&contacts.inverse_delassus[c]);
-    const LaneColumns p = load_columns(&impulse[c]);
+    const LaneColumns loaded = load_columns(&impulse[c]);
+    const Vec<2, Lanes> p{loaded.x, loaded.y};
     const Lanes du_x = bodies.v_b.x - bodies.v_a.x, du_y = bodies.v_b.y - bodies.v_a.y;
     // u_n = n . (v_b - v_a) + q_n;  u_t = t . (v_b - v_a) - (s_a + s_b),  t = (-n_y, n_x)
     const Lanes u_n = n.x * du_x + n.y * du_y + load_lanes(&offset[c]);
     const Lanes u_t = n.x * du_y - n.y * du_x - (s_a + s_b);
-    // p_n <- max(0, p_n - omega u_n / W_nn);  p_t <- clamp(p_t - omega u_t / W_tt, +- mu p_n)
-    const Lanes p_n = max(p.x - gain * u_n, splat(0));
-    const Lanes limit = load_lanes(&friction[c]) * p_n;
-    const Lanes p_t = max(min(p.y - gain / (1 + kappa) * u_t, limit), -limit);
-    const Lanes dp_n = p_n - p.x, dp_t = p_t - p.y;
-    store_columns({p_n, p_t}, &impulse[c]);
+    const Vec<2, Lanes> solved =
+        solve_uncoupled(p, {u_n, u_t}, gain, gain / (1 + kappa), load_lanes(&friction[c]));
+    const Lanes dp_n = solved[0] - p[0], dp_t = solved[1] - p[1];
+    store_columns({solved[0], solved[1]}, &impulse[c]);
     bodies.apply({dp_n * n.x - dp_t * n.y, dp_n * n.y + dp_t * n.x}, inverse_a, inverse_b);
     // ds = -kappa p_t / m on both
     scatter_spin(s_a - kappa * inverse_a * dp_t, spin, a);
     scatter_spin(s_b - kappa * inverse_b * dp_t, spin, b);
     const Lanes W_nn = inverse_a + inverse_b;
-    const Lanes v_n = W_nn * dp_n, v_t = (1 + kappa) * W_nn * dp_t;
-    violation.add(v_n * v_n + v_t * v_t, p_n);
+    violation.add(Vec<2, Lanes>{W_nn * dp_n, (1 + kappa) * W_nn * dp_t}, solved[0]);
   }
   return violation;
 }
 
 }  // namespace
 
-void sweep_fours(const SweepData& data, const ContactBatch& batch, bool frictional, Violation& violation) {
-  const LaneViolation lanes = (frictional ? sweep_frictional : sweep_frictionless)(data, batch);
-  lanes.add_to(violation, data.relaxation);
+Violation sweep_fours(const SweepData& data, const ContactBatch& batch, bool frictional) {
+  return (frictional ? sweep_frictional : sweep_frictionless)(data, batch).total(data.relaxation);
 }
 
 void push_fours(RigidParticles<2>& particles, const RigidContacts<2>& contacts,

@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "softgrain/contact/residual.hpp"
+#include "softgrain/contact/law.hpp"
 #include "softgrain/rigid/contacts.hpp"
 #include "softgrain/rigid/particles.hpp"
 
@@ -18,8 +18,8 @@ struct SweepData {
 };
 
 /// Relaxes the contacts of a batch up to its `fours_end` four at once, as RigidContactSystem::relax_contact
-/// does one by one, and adds to the violation.
-void sweep_fours(const SweepData& data, const ContactBatch& batch, bool frictional, Violation& violation);
+/// does one by one.
+Violation sweep_fours(const SweepData& data, const ContactBatch& batch, bool frictional);
 
 /// v += M^-1 n p_n for the same contacts of a frictionless batch.
 void push_fours(RigidParticles<2>& particles, const RigidContacts<2>& contacts,

@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <cstring>
 
-#include "softgrain/rigid/contact_blocks.hpp"
-
 namespace softgrain {
 namespace {
 
 using Floats = Narrow::Floats;
 using Integers = int __attribute__((vector_size(32)));
 using Pairs = double __attribute__((vector_size(32)));  // of floats, moved as one
-
-Floats max(Floats a, Floats b) { return a > b ? a : b; }  // b if one is NaN
-Floats min(Floats a, Floats b) { return a < b ? a : b; }
 
 struct FloatColumns {
   Floats x, y;
@@ -70,31 +65,6 @@ void scatter(Floats lanes, float* numbers, const int* index) {
 
 }  // namespace
 
-/// Sums over the lanes of what Violation counts.
-struct NarrowSweeps::LaneViolation {
-  Floats sum{}, max{}, contacts{};
-
-  void add(Floats square, Floats p_n) {
-    sum += square;
-    max = square <= max ? max : square;  // keeps NaN
-    contacts += ((p_n > 0) | (square > 0)) ? Floats{} + 1 : Floats{};
-  }
-  /// v_c = W dp / omega: what the contact would jump without relaxation.
-  Violation total(double relaxation) const {
-    const double scale = 1 / (relaxation * relaxation);
-    Violation violation;
-    double count = 0;
-    for (int lane = 0; lane < eight; ++lane) {
-      violation.sum_of_squares += scale * sum[lane];
-      const double square = scale * max[lane];
-      violation.max_square = square <= violation.max_square ? violation.max_square : square;
-      count += contacts[lane];
-    }
-    violation.contacts = static_cast<int>(count);
-    return violation;
-  }
-};
-
 /// Velocities of the bodies a and b of eight contacts, and the impulses that change them.
 struct NarrowSweeps::Bodies {
   Bodies(Velocity* velocity, const Eight& contact)
@@ -120,22 +90,19 @@ void NarrowSweeps::turn(const Eight& c, Floats s_a, Floats s_b, Floats p_t) {
 
 /// Per contact: reads 36 B of contact and 16 B of velocities, writes 4 B and 16 B.
 template <bool Measured>
-void NarrowSweeps::relax(Eight& c, LaneViolation& violation) {
+void NarrowSweeps::relax(Eight& c, LaneViolation<Floats>& violation) {
   Bodies bodies(velocity_.data(), c);
-  // u_n = n . (v_b - v_a) + q_n;  p_n <- max(0, p_n - omega u_n / W_nn)
+  // u_n = n . (v_b - v_a) + q_n
   const Floats u_n = c.n_x * (bodies.b.x - bodies.a.x) + c.n_y * (bodies.b.y - bodies.a.y) + c.offset;
-  const Floats p_n = max(Floats{}, c.p_n - c.gain * u_n);
+  const Floats p_n = normal_impulse(c.p_n, u_n, c.gain);
   const Floats dp = p_n - c.p_n;
   c.p_n = p_n;
   bodies.apply(dp * c.n_x, dp * c.n_y);
-  if constexpr (Measured) {
-    const Floats v = dp * (c.inverse_a + c.inverse_b);
-    violation.add(v * v, p_n);
-  }
+  if constexpr (Measured) violation.add(Vec<1, Floats>{dp * (c.inverse_a + c.inverse_b)}, p_n);
 }
 
 template <bool Measured>
-void NarrowSweeps::relax(FrictionalEight& c, LaneViolation& violation) {
+void NarrowSweeps::relax(FrictionalEight& c, LaneViolation<Floats>& violation) {
   Bodies bodies(velocity_.data(), c);
   const float kappa = inertia_ratio_;
   const Floats s_a = gather(spin_.data(), c.a), s_b = gather(spin_.data(), c.b);
@@ -143,25 +110,22 @@ void NarrowSweeps::relax(FrictionalEight& c, LaneViolation& violation) {
   // u_n = n . (v_b - v_a) + q_n;  u_t = t . (v_b - v_a) - (s_a + s_b),  t = (-n_y, n_x)
   const Floats u_n = c.n_x * du_x + c.n_y * du_y + c.offset;
   const Floats u_t = c.n_x * du_y - c.n_y * du_x - (s_a + s_b);
-  // p_n <- max(0, p_n - omega u_n / W_nn);  p_t <- clamp(p_t - omega u_t / W_tt, +- mu p_n)
-  const Floats p_n = max(Floats{}, c.p_n - c.gain * u_n);
-  const Floats limit = c.friction * p_n;
-  const Floats p_t = max(min(c.p_t - c.gain / (1 + kappa) * u_t, limit), -limit);
-  const Floats dp_n = p_n - c.p_n, dp_t = p_t - c.p_t;
-  c.p_n = p_n;
-  c.p_t = p_t;
+  const Vec<2, Floats> p{c.p_n, c.p_t};
+  const Vec<2, Floats> solved = solve_uncoupled(p, {u_n, u_t}, c.gain, c.gain / (1 + kappa), c.friction);
+  const Floats dp_n = solved[0] - p[0], dp_t = solved[1] - p[1];
+  c.p_n = solved[0];
+  c.p_t = solved[1];
   bodies.apply(dp_n * c.n_x - dp_t * c.n_y, dp_n * c.n_y + dp_t * c.n_x);
   turn(c, s_a, s_b, dp_t);
   if constexpr (Measured) {
     const Floats W_nn = c.inverse_a + c.inverse_b;
-    const Floats v_n = W_nn * dp_n, v_t = (1 + kappa) * W_nn * dp_t;
-    violation.add(v_n * v_n + v_t * v_t, p_n);
+    violation.add(Vec<2, Floats>{W_nn * dp_n, (1 + kappa) * W_nn * dp_t}, solved[0]);
   }
 }
 
 template <bool Measured>
 Violation NarrowSweeps::sweep_block(Block& block) {
-  LaneViolation violation;
+  LaneViolation<Floats> violation;
   for (Eight& contact : block.frictionless.eights) relax<Measured>(contact, violation);
   for (FrictionalEight& contact : block.frictional.eights) relax<Measured>(contact, violation);
   return Measured ? violation.total(relaxation_) : Violation{};
@@ -246,40 +210,39 @@ void NarrowSweeps::load(const RigidContacts<2>& contacts, std::span<const double
   }
 }
 
-void NarrowSweeps::start(const RigidParticles<2>& particles, const RigidContacts<2>& contacts,
-                         const std::function<void(int, int)>& prepare, std::span<const double> offset,
-                         double relaxation) {
-  const int bodies = static_cast<int>(particles.velocity.size());
+void NarrowSweeps::take_bodies(const RigidParticles<2>& particles, const RigidContacts<2>& contacts,
+                               double relaxation) {
+  bodies_ = static_cast<int>(particles.velocity.size());
   if (relaxation_ != static_cast<float>(relaxation)) blocks_.clear();
   relaxation_ = static_cast<float>(relaxation);
   inertia_ratio_ = static_cast<float>(particles.inertia_ratio);
   blocks_.resize(contacts.blocks.empty() ? 0 : contacts.blocks.back().list + 1);
   listed_.clear();
   for (const ContactBlock& block : contacts.blocks) listed_.push_back(block.list);
-  velocity_.resize(bodies + blocks_.size());
-  spin_.resize(bodies + blocks_.size());
-  parallel_ranges(bodies, [&](int begin, int end) {
+  velocity_.resize(bodies_ + blocks_.size());
+  spin_.resize(bodies_ + blocks_.size());
+  parallel_ranges(bodies_, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const Vec<2>& v = particles.velocity[i];
       velocity_[i] = {static_cast<float>(v[0]), static_cast<float>(v[1])};
       spin_[i] = static_cast<float>(particles.spin[i][0]);
     }
   });
-  for_each_block(static_cast<int>(listed_.size()), [&](int k) {
-    const ContactBlock& listed = contacts.blocks[k];
-    prepare(listed.begin(), listed.end());
-    Block& block = blocks_[listed.list];
-    const int begin = listed.begin(), idle = bodies + listed.list;
-    if (block.made != listed.made) {
-      fill(contacts, listed.frictionless, begin, idle, block.frictionless);
-      fill(contacts, listed.frictional, begin, idle, block.frictional);
-      block.made = listed.made;
-    }
-    velocity_[idle] = {};
-    spin_[idle] = 0;
-    load(contacts, offset, listed, block.frictionless);
-    load(contacts, offset, listed, block.frictional);
-  });
+}
+
+void NarrowSweeps::take_contacts(const RigidContacts<2>& contacts, const ContactBlock& listed,
+                                 std::span<const double> offset) {
+  Block& block = blocks_[listed.list];
+  const int begin = listed.begin(), idle = bodies_ + listed.list;
+  if (block.made != listed.made) {
+    fill(contacts, listed.frictionless, begin, idle, block.frictionless);
+    fill(contacts, listed.frictional, begin, idle, block.frictional);
+    block.made = listed.made;
+  }
+  velocity_[idle] = {};
+  spin_[idle] = 0;
+  load(contacts, offset, listed, block.frictionless);
+  load(contacts, offset, listed, block.frictional);
 }
 
 void NarrowSweeps::read_impulses(const ContactBlock& listed, std::span<Vec<2>> impulse) const {

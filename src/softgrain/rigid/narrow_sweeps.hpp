@@ -1,10 +1,10 @@
 #pragma once
-#include <functional>
 #include <span>
 #include <vector>
 
-#include "softgrain/contact/residual.hpp"
+#include "softgrain/contact/law.hpp"
 #include "softgrain/math/narrow.hpp"
+#include "softgrain/rigid/contact_blocks.hpp"
 #include "softgrain/rigid/contacts.hpp"
 #include "softgrain/rigid/particles.hpp"
 
@@ -19,8 +19,16 @@ class NarrowSweeps {
   /// Starts from the free velocities of the bodies and the impulses of the contacts, which act at once.
   /// `prepare(begin, end)` makes sure of normals, impulses and `offset` (m) [m/s], as from signorini_offset,
   /// of these contacts; omega = `relaxation`.
-  void start(const RigidParticles<2>& particles, const RigidContacts<2>& contacts,
-             const std::function<void(int, int)>& prepare, std::span<const double> offset, double relaxation);
+  template <class Prepare>
+  void start(const RigidParticles<2>& particles, const RigidContacts<2>& contacts, const Prepare& prepare,
+             std::span<const double> offset, double relaxation) {
+    take_bodies(particles, contacts, relaxation);
+    for_each_block(static_cast<int>(contacts.blocks.size()), [&](int k) {
+      const ContactBlock& block = contacts.blocks[k];
+      prepare(block.begin(), block.end());
+      take_contacts(contacts, block, offset);
+    });
+  }
 
   /// One sweep. The violation is counted only if `measured`.
   Violation sweep(bool measured);
@@ -60,8 +68,10 @@ class NarrowSweeps {
     Batch<FrictionalEight> frictional;
   };
   struct Bodies;
-  struct LaneViolation;
 
+  void take_bodies(const RigidParticles<2>& particles, const RigidContacts<2>& contacts, double relaxation);
+  void take_contacts(const RigidContacts<2>& contacts, const ContactBlock& listed,
+                     std::span<const double> offset);
   template <class AnyEight>
   void fill(const RigidContacts<2>& contacts, const ContactBatch& listed, int begin, int idle,
             Batch<AnyEight>& batch) const;
@@ -71,9 +81,9 @@ class NarrowSweeps {
   /// ds = -kappa p_t/m on both bodies, whose spins are s_a and s_b.
   void turn(const Eight& contact, Floats s_a, Floats s_b, Floats p_t);
   template <bool Measured>
-  void relax(Eight& contact, LaneViolation& violation);
+  void relax(Eight& contact, LaneViolation<Floats>& violation);
   template <bool Measured>
-  void relax(FrictionalEight& contact, LaneViolation& violation);
+  void relax(FrictionalEight& contact, LaneViolation<Floats>& violation);
   template <bool Measured>
   Violation sweep_block(Block& block);
 
@@ -81,6 +91,7 @@ class NarrowSweeps {
   std::vector<int> listed_;         // those that have contacts, in the order of the sweep
   std::vector<Velocity> velocity_;  // of the bodies, then of one at rest for each block
   std::vector<float> spin_;
+  int bodies_ = 0;
   float relaxation_ = 1, inertia_ratio_ = 2;
 };
 

@@ -156,10 +156,24 @@ void RigidDynamics<Dim>::account_work(double dt) {
   });
   if (!std::isfinite(sum[1])) throw_not_finite();
   work = {.force = sum[0]};
-  for (int w = 0; w < static_cast<int>(particles.walls.size()); ++w)
-    work.wall -= dot(wall_impulse(w), particles.walls[w].velocity);
+  add_up_wall_impulses();
+  for (std::size_t w = 0; w < particles.walls.size(); ++w)
+    work.wall -= dot(wall_impulse_[w], particles.walls[w].velocity);
   work.contact = sum[1] - work.force - work.wall;
   account_contacts();
+}
+
+template <int Dim>
+void RigidDynamics<Dim>::add_up_wall_impulses() {
+  wall_impulse_.assign(particles.walls.size(), {});
+  const int first_wall = particles.wall_body(0);
+  for (int c = contacts.blocks.back().begin(); c < contacts.size(); ++c) {
+    if (contacts.body_b[c] < first_wall) continue;
+    Vec<Dim>& sum = wall_impulse_[contacts.body_b[c] - first_wall];
+    sum += contacts.impulse[c][0] * contacts.normal[c];
+    const auto t = tangents(contacts.normal[c]);
+    for (int k = 1; k < Dim; ++k) sum += contacts.impulse[c][k] * t[k - 1];
+  }
 }
 
 /// A contact does p . (u + u+)/2.
@@ -183,19 +197,6 @@ void RigidDynamics<Dim>::throw_not_finite() const {
     ++first;
   throw NumericalError(
       fmt::format("the velocity of particle {} is not finite; use a smaller time step", first));
-}
-
-template <int Dim>
-Vec<Dim> RigidDynamics<Dim>::wall_impulse(int wall) const {
-  Vec<Dim> sum;
-  const int body = particles.wall_body(wall);
-  for (int c = contacts.blocks.back().begin(); c < contacts.size(); ++c) {
-    if (contacts.body_b[c] != body) continue;
-    sum += contacts.impulse[c][0] * contacts.normal[c];
-    const auto t = tangents(contacts.normal[c]);
-    for (int k = 1; k < Dim; ++k) sum += contacts.impulse[c][k] * t[k - 1];
-  }
-  return sum;
 }
 
 template <int Dim>

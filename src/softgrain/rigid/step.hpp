@@ -67,8 +67,8 @@ class RigidDynamics {
   RigidStepOptions options;
   StepWork work;  ///< of the last step
 
-  /// Impulse of the particles on wall w in the last step, [N s/m in 2D].
-  Vec<Dim> wall_impulse(int wall) const;
+  /// Impulse of the particles on wall w in the last step, [N s/m in 2D]; zero before the first.
+  Vec<Dim> wall_impulse(int wall) const { return wall_impulse_.empty() ? Vec<Dim>{} : wall_impulse_[wall]; }
 
   /// Makes the contacts of renewed lists again from the reference as it is.
   void rebuild_contacts();
@@ -83,6 +83,7 @@ class RigidDynamics {
   void temper_restitution(double dt);
   void push_out(double dt);
   void account_work(double dt);
+  void add_up_wall_impulses();
   void account_contacts();
   Overlaps overlaps_of(const ContactBlock& block) const;
   [[noreturn]] void throw_not_finite() const;
@@ -92,6 +93,7 @@ class RigidDynamics {
   std::vector<Vec<Dim>> force_, velocity_start_;
   std::vector<Spin<Dim>> spin_start_;
   std::vector<double> offset_;
+  std::vector<Vec<Dim>> wall_impulse_;            // (walls)
   std::vector<Vec<Dim>> velocity_kept_, pushes_;  // of push_out
   std::vector<double> frictionless_;
   RigidContacts<Dim> replaced_;  // its memory serves the next list

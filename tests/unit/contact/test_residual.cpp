@@ -24,9 +24,9 @@ TEST_CASE("the natural map of one contact is what pencil and paper give") {
 
 TEST_CASE("NaN in one contact is not lost in the report") {
   Violation violation;
-  violation.add(1, true);
-  violation.add(std::numeric_limits<double>::quiet_NaN(), true);
-  violation.add(2, true);
+  violation.add(Vec<1>{1}, 1);
+  violation.add(Vec<1>{std::numeric_limits<double>::quiet_NaN()}, 1);
+  violation.add(Vec<1>{2}, 1);
   const SolverReport report = report_of(violation, 1, 1, {});
   CHECK(!std::isfinite(report.residual_mean));
   CHECK(!report.converged);
@@ -34,9 +34,9 @@ TEST_CASE("NaN in one contact is not lost in the report") {
 
 TEST_CASE("contacts without impulse and without violation do not dilute the mean") {
   Violation violation;
-  violation.add(4, true);
-  for (int c = 0; c < 99; ++c) violation.add(0, false);
-  violation.add(0, true);
+  violation.add(Vec<1>{2}, 1);
+  for (int c = 0; c < 99; ++c) violation.add(Vec<1>{}, 0);
+  violation.add(Vec<1>{}, 1);
   const SolverReport report = report_of(violation, 1, 1, {});
   CHECK(report.residual_mean == doctest::Approx(std::sqrt(2)));
   CHECK(report.residual_max == doctest::Approx(2));
