@@ -33,6 +33,7 @@ void ImplicitDynamics::start(double dt) {
       if (quasi_static(dt)) batch.position[i] += flying_[b] * fall;
     }
   });
+  hold_spins(dt);
   for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
   outline_.walls = walls;
   outline_.dt = dt;
