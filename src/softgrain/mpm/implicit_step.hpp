@@ -111,6 +111,7 @@ class ImplicitDynamics {
   void start(double dt);
   void set_flying(double dt);
   void hold_touching();
+  void find_first_contacts();
   void hold_spins(double dt);
   void hold_in_compliance(std::size_t b);
   void hold_increment(std::size_t b);
