@@ -8,6 +8,7 @@
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/mpm/contact_work.hpp"
 #include "softgrain/mpm/equilibrium.hpp"
+#include "softgrain/mpm/wall_couple.hpp"
 
 namespace softgrain {
 namespace {
@@ -94,6 +95,7 @@ void ExplicitDynamics::look_at_cells(double dt) {
 void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
   check_wall_motion(walls, dt, smallest_radius_);
   damping_ = {options.damping, dt, walls};
+  take_back_spin();
   // contacts where x + dt v will be
   fly_outline(dt);
   for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
@@ -125,6 +127,15 @@ void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
   report.converged = report.converged && solved.converged;
   report.contacts = static_cast<int>(std::ranges::count_if(impulse, [](auto& p) { return p[0] != 0; }));
   report.penetration_max = std::max(report.penetration_max, penetration_max());
+}
+
+/// Of grains that frictionless walls alone touch: what they gave in the step before.
+void ExplicitDynamics::take_back_spin() {
+  if (options.wall_friction > 0) return;
+  const std::vector<Wide> alone = grains_on_walls_alone(grains, contacts);
+  if (std::ranges::none_of(alone, [](const Wide& of_batch) { return any(of_batch > 0.0); })) return;
+  grains.gather_outline(outline_.start);
+  work.contacts -= turn_back(grains, alone, contacts, impulse, outline_.start);
 }
 
 /// Where the outlines are, and where they would be after dt without forces.

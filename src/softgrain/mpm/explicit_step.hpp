@@ -75,6 +75,7 @@ class ExplicitDynamics {
   void look_at_cells(double dt);
   double sub_steps(double dt) const;
   void sub_step(double dt, SoftStepReport& report);
+  void take_back_spin();
   void fly_outline(double dt);
   void kick(double dt);
   void kick_batch(double dt, const WideVectors& force, GrainBatch& batch, BatchStep& step) const;

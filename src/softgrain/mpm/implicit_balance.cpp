@@ -90,6 +90,7 @@ void ImplicitDynamics::add_work() {
       work.inertia += shares[b].inertia[lane];
       work.gravity += shares[b].gravity[lane];
       work.damping += shares[b].damping[lane];
+      work.contacts += held_[b].couple[lane] * held_[b].wanted[lane];
     }
   add_contact_work(contacts, impulse, outline_, work, wall_impulse_);
 }

@@ -50,6 +50,7 @@ ImplicitDynamics::Imbalance ImplicitDynamics::correct(bool same_matrix) {
     grains.scatter_outline(force, batch, f);
     kept_[b].assign(f.begin() + batch.topology->grid.outline_begin, f.end());
     matrix_[b].finish_solve(numbers(half_solved_[b]), numbers(kept_[b]), numbers(f));
+    hold_correction(b);
   });
   const double correction = largest_correction_of_grains() / mean_radius_;
   if (!quasi_static(outline_.dt)) {

@@ -33,10 +33,20 @@ void ImplicitDynamics::start(double dt) {
       if (quasi_static(dt)) batch.position[i] += flying_[b] * fall;
     }
   });
-  for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
-  outline_.walls = walls;
   outline_.dt = dt;
   outline_.normals_at = quasi_static(dt) ? 1 : normals_of_fast_steps;
+  if (impulse_time <= 0) find_first_contacts();
+  hold_spins(dt);
+  for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
+  outline_.walls = walls;
+}
+
+/// No step has found contacts yet, and hold_spins asks who is near whom.
+void ImplicitDynamics::find_first_contacts() {
+  outline_.position = outline_.start;
+  outline_.walls = walls;
+  contacts = neighbours_.detect(grains, outline_);
+  impulse.assign(contacts.size(), {});
 }
 
 /// Grains that carry contacts fly no more.

@@ -147,7 +147,9 @@ ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, S
       A.add(i, i, {entry, 0.0, 0.0, entry});
     }
     failed[b] = batch.grain_in(A.factor());
-    if (failed[b] < 0) A.kept_inverse(compliance_[b]);
+    if (failed[b] >= 0) return;
+    A.kept_inverse(compliance_[b]);
+    hold_in_compliance(b);
   });
   return none_failed(failed) ? Failure::none : Failure::indefinite_matrix;
 }
@@ -172,6 +174,7 @@ ImplicitDynamics::Failure ImplicitDynamics::residual(double dt) {
     half_solved_[b].resize(r.size());
     kept_[b].resize(batch.topology->grid.outline_nodes());
     matrix_[b].begin_solve(numbers(r), numbers(half_solved_[b]), numbers(kept_[b]));
+    hold_increment(b);
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
       for (int v = 0; v < batch.topology->grid.outline_nodes(); ++v)
         outline_increment_[grains.outline_begin(batch.grain[lane]) + v] = {kept_[b][v][0][lane],

@@ -94,6 +94,16 @@ class ImplicitDynamics {
     double correction = 0, residual = 0;
   };
 
+  /// Of a batch, some of whose grains keep their spin: a couple -c q on the grains in `lanes`, see
+  /// hold_spins.
+  struct HeldSpin {
+    Wide lanes = 0.0;                 ///< 1 or 0; nothing is held while `direction` is empty
+    WideVectors direction, response;  ///< q, and u = A^-1 q
+    Wide inverse = 0.0;               ///< 1/(q . u), or 0
+    Wide wanted = 0.0, left = 0.0;    ///< q . (x - x_n) at the end; and what lacks of it
+    Wide couple = 0.0;                ///< c
+  };
+
   bool quasi_static(double dt) const { return dt > options.quasi_static_from * wave_time_; }
   /// The step whose inertia A has [s].
   double step_of_matrix(double dt) const { return std::min(dt, options.inertia_of_at_most * wave_time_); }
@@ -101,6 +111,11 @@ class ImplicitDynamics {
   void start(double dt);
   void set_flying(double dt);
   void hold_touching();
+  void find_first_contacts();
+  void hold_spins(double dt);
+  void hold_in_compliance(std::size_t b);
+  void hold_increment(std::size_t b);
+  void hold_correction(std::size_t b);
   Failure factor(double dt, double proximal, SoftStepReport& report);
   Failure residual(double dt);
   bool solve_contacts(double dt, SoftStepReport& report);
@@ -138,6 +153,7 @@ class ImplicitDynamics {
   std::vector<Wide> flying_;                     // 1 for grains whose start is x_n + dt v_n, else 0
   std::vector<Wide> pace_;                       // t_k of follow_momentum
   std::vector<Vec<2>> proximal_;                 // (outline vertices) c p/l on both components [N/m^2]
+  std::vector<HeldSpin> held_;                   // per batch
   std::vector<Vec<2>> outline_increment_;
   OutlineState outline_;
   std::vector<Wall<2>> walls_start_;

@@ -51,14 +51,19 @@ int facing_segment(const Ring& ring, std::span<const Vec<2>> position, const Vec
   return dot(x - position[nearest], tangent) < 0 ? before : nearest;
 }
 
-/// True if x is surely more than `margin` outside the curve between two neighbours, which bulges by less than
-/// a quarter of its chord.
-bool surely_outside(const Vec<2>& start, const Vec<2>& end, const Vec<2>& x, double margin) {
-  const Vec<2> chord = end - start;
-  const double square = dot(chord, chord);
-  // distance times |chord|, beyond the bulge, against margin times |chord|
-  const double beyond = -dot(x - start, perpendicular(chord)) - square / 4;
-  return beyond > 0 && beyond * beyond > margin * margin * square;
+/// True if x is surely more than `margin` outside the curve from the vertex `start` to the next. Over its
+/// chord the curve bulges by less than a quarter of the steeper of its slopes at the ends (Bezier's control
+/// points); an eighth more than the margin covers what the normal at an end is inclined.
+bool surely_outside(std::span<const Vec<2>> position, const Ring& ring, int start, const Vec<2>& x,
+                    double margin) {
+  const int end = ring.next(start);
+  const Vec<2> chord = position[end] - position[start], inward = perpendicular(chord);
+  const double slope = std::max(-dot(position[end] - position[ring.previous(start)], inward),
+                                dot(position[ring.next(end)] - position[start], inward)) /
+                       2;  // times |chord|
+  const double beyond = -dot(x - position[start], inward) - std::max(slope, 0.0) / 4;
+  const double least = 1.125 * margin;
+  return beyond > 0 && beyond * beyond > least * least * dot(chord, chord);
 }
 
 /// The place that a slave faces on the curve from the vertex `start` to the next.
@@ -203,8 +208,8 @@ void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineSta
       candidate->nearest = nearest_vertex(ring, state.position, x, candidate->nearest);
       const Vec<2> d = x - state.position[candidate->nearest];
       if (dot(d, d) > 9 * segment_ * segment_) continue;
-      const int start = facing_segment(ring, state.position, x, candidate->nearest), end = ring.next(start);
-      if (surely_outside(state.position[start], state.position[end], x, margin)) continue;
+      const int start = facing_segment(ring, state.position, x, candidate->nearest);
+      if (surely_outside(state.position, ring, start, x, margin)) continue;
       const double gap = curve_contact(state.position, ring, v, start).gap;
       if (gap >= margin) continue;
       OutlineContact contact = facing_contact(on_the_way_, ring, v, candidate->nearest);

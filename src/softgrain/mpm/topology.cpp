@@ -58,6 +58,17 @@ std::vector<OutlineArc> arcs_of(std::span<const Vec<2>> outline) {
   return arcs;
 }
 
+/// True for a regular polygon about the origin.
+bool is_round(std::span<const Vec<2>> outline) {
+  constexpr double nothing = 1e-9;
+  const double side = norm(outline[1] - outline[0]);
+  for (std::size_t v = 0; v < outline.size(); ++v)
+    if (std::abs(norm(outline[v]) - norm(outline[0])) > nothing ||
+        std::abs(norm(outline[(v + 1) % outline.size()] - outline[v]) - side) > nothing)
+      return false;
+  return true;
+}
+
 }  // namespace
 
 Topology::Topology(ReferenceGrid reference_grid)
@@ -66,6 +77,7 @@ Topology::Topology(ReferenceGrid reference_grid)
       node_volume(grid.nodes(), 0),
       arc(arcs_of(grid.outline())),
       area(grid.fullness * polygon_area(grid.outline())),
+      round(is_round(grid.outline())),
       pattern(pattern_of(grid)) {
   for (std::size_t p = 0; p < points.size(); ++p)
     for (int a = 0; a < 4; ++a)

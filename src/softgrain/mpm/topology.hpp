@@ -42,6 +42,7 @@ struct Topology {
   std::vector<double> node_volume;  ///< (nodes) fullness sum_p N_i V_p [R^2]: the lumped mass over rho R^2
   std::vector<OutlineArc> arc;      ///< (outline vertices)
   double area = 0;                  ///< of the body, pi for a disk [R^2]
+  bool round = false;               ///< the outline is a regular polygon about the origin
   BlockPattern pattern;
   std::vector<CellBlock>
       cell_blocks;  ///< (10 cells): the pairs (a, b), b <= a, of the four nodes of each cell
