@@ -14,7 +14,7 @@ install(FILES "${PROJECT_BINARY_DIR}/softgrain-config.cmake" "${PROJECT_BINARY_D
   DESTINATION "${config_dir}")
 
 install(DIRECTORY python/softgrain DESTINATION "${SOFTGRAIN_PYTHON_DIR}" FILES_MATCHING
-  PATTERN "*.py" PATTERN "*.pyi" PATTERN py.typed PATTERN __pycache__ EXCLUDE)
+  PATTERN "*.py" PATTERN "*.pyi" PATTERN options.json PATTERN py.typed PATTERN __pycache__ EXCLUDE)
 if(SOFTGRAIN_PYTHON)
   install(TARGETS softgrain_python DESTINATION "${SOFTGRAIN_PYTHON_DIR}/softgrain")
 endif()

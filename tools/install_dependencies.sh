@@ -37,6 +37,7 @@ checks     python3                 tools/check_layers
 checks     clang-format            one format for all sources
 checks     clang-tidy              names and common mistakes
 docs       mkdocs                  the documentation as a site
+docs       mkdocs-material         its theme, with search and a dark mode
 docs       libjs-katex             its equations
 bench      libbox2d-dev            a peer to measure against
 bench      libsiconos-numerics-dev a peer to measure against

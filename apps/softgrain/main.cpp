@@ -17,6 +17,7 @@
 #include <system_error>
 #include <vector>
 
+#include "python_verbs.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/version.hpp"
 #include "softgrain/io/case_file.hpp"
@@ -52,10 +53,12 @@ std::string complete_case_path(std::string& path) {
 
 }  // namespace
 
+void complete_case_path_of(CLI::Option& option) { option.transform(CLI::Validator(complete_case_path, "")); }
+
 void add_case_arguments(CLI::App& verb, CaseArguments& arguments) {
-  verb.add_option("CASE", arguments.path, "case file, as written by `softgrain new`")
-      ->transform(CLI::Validator(complete_case_path, ""))
-      ->required();
+  auto* path =
+      verb.add_option("CASE", arguments.path, "case file, as written by `softgrain new`")->required();
+  complete_case_path_of(*path);
   verb.add_option("--set", arguments.sets, "key=value: replaces one value of the case; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
@@ -69,12 +72,12 @@ void add_verbs(CLI::App& app) {
   add_new_verb(app);
   add_check_verb(app);
   add_run_verb(app);
-  add_sweep_verb(app);
-  add_reproduce_verb(app);
-  add_plot_verb(app);
+  add_python_verb(app, "sweep");
+  add_python_verb(app, "reproduce");
+  add_python_verb(app, "plot");
   add_report_verb(app);
   add_export_verb(app);
-  add_paraview_verb(app);
+  add_python_verb(app, "paraview");
   add_info_verb(app);
   add_solve_verb(app);
   add_schema_verb(app);

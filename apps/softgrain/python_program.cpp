@@ -44,8 +44,9 @@ std::vector<fs::path> python_paths() {
   return {own_path().parent_path() / "python", package().parent_path()};
 }
 
-void become_python(const std::string& verb, std::vector<std::string> words) {
-  words.insert(words.begin(), {python_interpreter(), package().string(), verb});
+void become_python(std::vector<std::string> words) {
+  const std::string verb = words.front();
+  words.insert(words.begin(), {python_interpreter(), package().string()});
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);

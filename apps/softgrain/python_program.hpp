@@ -5,10 +5,10 @@
 
 namespace softgrain {
 
-/// Becomes `python3 <the package softgrain> <verb> <words>`, with /usr/bin/python3 or what SOFTGRAIN_PYTHON
-/// names, so that Python's exit code and its signals are ours. SOFTGRAIN_PROGRAM tells the package which
-/// program to call for the runs it needs. Raises UsageError if there is no such interpreter.
-[[noreturn]] void become_python(const std::string& verb, std::vector<std::string> words);
+/// Becomes `python3 <the package softgrain> <words>`, the first of them a verb, with /usr/bin/python3 or what
+/// SOFTGRAIN_PYTHON names, so that Python's exit code and its signals are ours. SOFTGRAIN_PROGRAM tells the
+/// package which program to call for the runs it needs. Raises UsageError if there is no such interpreter.
+[[noreturn]] void become_python(std::vector<std::string> words);
 
 /// /usr/bin/python3, or what SOFTGRAIN_PYTHON names.
 std::string python_interpreter();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "choices.hpp"
 #include "softgrain/io/schema.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
@@ -13,36 +14,122 @@ namespace softgrain {
 
 namespace {
 
+using Words = std::vector<std::string>;
+
 struct OptionWords {
   std::string name;  ///< without its dashes
   std::string text;
   bool takes_value;
+  Words choices;
 };
 
 struct VerbWords {
   std::string name, text;
   std::vector<OptionWords> options;
+  Words places;  ///< what its first argument may be
 };
+
+/// What a key of the case takes, if that can be listed.
+struct KeyWords {
+  std::string name;
+  Words choices;
+};
+
+/// Columns of series.csv that somebody sums up or draws.
+const Words& series_columns() {
+  static const Words columns{"strain",
+                             "stress_top",
+                             "stress_bottom",
+                             "stress_side",
+                             "force_top",
+                             "force_bottom",
+                             "force_side",
+                             "wall_height",
+                             "phi",
+                             "phi_0",
+                             "z",
+                             "z_no_rattlers",
+                             "z_with_walls",
+                             "z_backbone",
+                             "rattlers",
+                             "backbone",
+                             "contacts",
+                             "inertial_number",
+                             "kinetic_energy",
+                             "wall_work",
+                             "dissipation",
+                             "energy_error",
+                             "elastic_energy",
+                             "attraction_energy",
+                             "area_ratio",
+                             "residual_max",
+                             "overlap_max"};
+  return columns;
+}
+
+Words choices_of_option(const CLI::Option& option, const std::string& name) {
+  return name == "column" ? series_columns() : choices_of(&option);
+}
 
 /// What there is to complete, from the parser itself.
 std::vector<VerbWords> words_of(const CLI::App& app) {
   std::vector<VerbWords> verbs;
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
-    VerbWords words{verb->get_name(), verb->get_description(), {}};
-    for (const CLI::Option* option : verb->get_options())
+    VerbWords words{verb->get_name(), verb->get_description(), {}, {}};
+    for (const CLI::Option* option : verb->get_options()) {
       for (const std::string& name : option->get_lnames())
-        words.options.push_back({name, option->get_description(), option->get_items_expected_max() > 0});
+        words.options.push_back({name, option->get_description(), option->get_items_expected_max() > 0,
+                                 choices_of_option(*option, name)});
+      if (option->get_positional() && words.places.empty()) words.places = choices_of(option);
+    }
     verbs.push_back(std::move(words));
   }
   return verbs;
 }
 
-std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); }
+std::vector<KeyWords> words_of_keys() {
+  std::vector<KeyWords> keys;
+  for (const Key& key : case_keys()) {
+    const bool truth = std::holds_alternative<MemberOf<bool>>(key.member);
+    keys.push_back({key.name, truth ? Words{"true", "false"} : key.allowed.words});
+  }
+  return keys;
+}
+
+std::string joined(const Words& words) { return fmt::format("{}", fmt::join(words, " ")); }
 
 std::string dashed_options(const VerbWords& verb) {
-  std::vector<std::string> names;
+  Words names;
   for (const OptionWords& option : verb.options) names.push_back("--" + option.name);
   return joined(names);
+}
+
+/// `"VERB --OPTION") ASSIGNMENT ;;` for each option whose values can be listed, in the syntax of bash and
+/// zsh.
+std::string cases_of_values(const std::vector<VerbWords>& verbs, const char* form) {
+  std::string cases;
+  for (const VerbWords& verb : verbs)
+    for (const OptionWords& option : verb.options)
+      if (!option.choices.empty())
+        cases += fmt::format("    \"{} --{}\") {} ;;\n", verb.name, option.name,
+                             fmt::format(fmt::runtime(form), joined(option.choices)));
+  return cases;
+}
+
+std::string cases_of_keys(const char* form) {
+  std::string cases;
+  for (const KeyWords& key : words_of_keys())
+    if (!key.choices.empty())
+      cases += fmt::format("    {}) {} ;;\n", key.name, fmt::format(fmt::runtime(form), joined(key.choices)));
+  return cases;
+}
+
+std::string cases_of_verbs(const std::vector<VerbWords>& verbs, const char* form) {
+  std::string cases;
+  for (const VerbWords& verb : verbs)
+    cases += fmt::format("    {}) {} ;;\n", verb.name,
+                         fmt::format(fmt::runtime(form), dashed_options(verb), joined(verb.places)));
+  return cases;
 }
 
 /// 'text' with its apostrophes as `escaped`.
@@ -53,48 +140,65 @@ std::string quoted(const std::string& text, const std::string& escaped) {
 }
 
 std::string bash_completion(const std::vector<VerbWords>& verbs) {
-  std::string names, cases;
-  for (const VerbWords& verb : verbs) {
-    names += (names.empty() ? "" : " ") + verb.name;
-    cases += fmt::format("    {}) options=\"{}\" ;;\n", verb.name, dashed_options(verb));
-  }
+  Words names;
+  for (const VerbWords& verb : verbs) names.push_back(verb.name);
   return fmt::format(
       R"(# bash completion of softgrain. In ~/.bashrc: source <(softgrain completion bash)
 _softgrain() {{
-  local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} options=""
+  local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} key="" options="" places="" values=""
   COMPREPLY=()
   if ((COMP_CWORD == 1)); then
     COMPREPLY=($(compgen -W "{names} --help --version" -- "$word"))
     return
   fi
-  if [[ $before == --set || $before == --vary ]]; then
+  # bash parts words at = as well: --set key = value, --format = png
+  if [[ $word == = ]]; then
+    key=$before word="" before=${{COMP_WORDS[COMP_CWORD-2]}}
+  elif [[ $before == = ]]; then
+    key=${{COMP_WORDS[COMP_CWORD-2]}} before=${{COMP_WORDS[COMP_CWORD-3]}}
+  fi
+  if [[ $key == --* ]]; then
+    before=$key key=""
+  fi
+  if [[ $before == --set || $before == --vary ]] && [[ -z $key ]]; then
     compopt -o nospace 2> /dev/null
     COMPREPLY=($(compgen -S = -W "{keys}" -- "$word"))
+    return
+  fi
+  case $key in
+{key_cases}  esac
+  case "${{COMP_WORDS[1]}} $before" in
+{value_cases}  esac
+  if [[ -n $values ]]; then
+    COMPREPLY=($(compgen -W "$values" -- "$word"))
     return
   fi
   case ${{COMP_WORDS[1]}} in
 {cases}  esac
   if [[ $word == -* ]]; then
     COMPREPLY=($(compgen -W "$options" -- "$word"))
+  elif ((COMP_CWORD == 2)) && [[ -n $places ]]; then
+    COMPREPLY=($(compgen -W "$places" -- "$word"))
   fi
 }}
 complete -o default -F _softgrain softgrain
 )",
-      fmt::arg("names", names), fmt::arg("keys", joined(key_names())), fmt::arg("cases", cases));
+      fmt::arg("names", joined(names)), fmt::arg("keys", joined(key_names())),
+      fmt::arg("key_cases", cases_of_keys("values=\"{}\"")),
+      fmt::arg("value_cases", cases_of_values(verbs, "values=\"{}\"")),
+      fmt::arg("cases", cases_of_verbs(verbs, "options=\"{}\" places=\"{}\"")));
 }
 
 std::string zsh_completion(const std::vector<VerbWords>& verbs) {
-  std::string names, cases;
-  for (const VerbWords& verb : verbs) {
+  std::string names;
+  for (const VerbWords& verb : verbs)
     names += fmt::format("    {}\n", quoted(verb.name + ":" + verb.text, "'\\''"));
-    cases += fmt::format("    {}) options=({}) ;;\n", verb.name, dashed_options(verb));
-  }
   return fmt::format(
       R"(#compdef softgrain
 # zsh completion of softgrain: save as _softgrain in a folder of $fpath, or in ~/.zshrc after compinit:
 # source <(softgrain completion zsh)
 _softgrain() {{
-  local -a verbs options
+  local -a verbs options places values
   verbs=(
 {names}  )
   if ((CURRENT == 2)); then
@@ -102,34 +206,58 @@ _softgrain() {{
     return
   fi
   if [[ $words[CURRENT-1] == (--set|--vary) ]]; then
-    compadd -S = -- {keys}
+    if compset -P '*='; then
+      case ${{IPREFIX%=}} in
+{key_cases}      esac
+      compadd -- $values
+    else
+      compadd -S = -- {keys}
+    fi
     return
   fi
+  case "$words[2] $words[CURRENT-1]" in
+{value_cases}  esac
   case $words[2] in
 {cases}  esac
-  if [[ $words[CURRENT] == -* ]]; then
+  if ((#values)); then
+    compadd -- $values
+  elif [[ $words[CURRENT] == -* ]]; then
     compadd -- $options
+  elif ((CURRENT == 3 && #places)); then
+    compadd -- $places
   else
     _files
   fi
 }}
 compdef _softgrain softgrain
 )",
-      fmt::arg("names", names), fmt::arg("keys", joined(key_names())), fmt::arg("cases", cases));
+      fmt::arg("names", names), fmt::arg("keys", joined(key_names())),
+      fmt::arg("key_cases", cases_of_keys("values=({})")),
+      fmt::arg("value_cases", cases_of_values(verbs, "values=({})")),
+      fmt::arg("cases", cases_of_verbs(verbs, "options=({}) places=({})")));
 }
 
 std::string fish_completion(const std::vector<VerbWords>& verbs) {
   std::string text =
       "# fish completion of softgrain: save as ~/.config/fish/completions/softgrain.fish\n"
       "complete -c softgrain -n __fish_use_subcommand -f -l help\n";
-  std::vector<std::string> keys;
-  for (const std::string& name : key_names()) keys.push_back(name + "=");
+  Words keys;
+  for (const KeyWords& key : words_of_keys()) {
+    keys.push_back(key.name + "=");
+    for (const std::string& choice : key.choices) keys.push_back(fmt::format("{}={}", key.name, choice));
+  }
   for (const VerbWords& verb : verbs) {
     text += fmt::format("complete -c softgrain -n __fish_use_subcommand -f -a {} -d {}\n", verb.name,
                         quoted(verb.text, "\\'"));
+    if (!verb.places.empty())
+      text += fmt::format("complete -c softgrain -n '__fish_seen_subcommand_from {}' -f -a '{}'\n", verb.name,
+                          joined(verb.places));
     for (const OptionWords& option : verb.options) {
       const bool of_case = option.name == "set" || option.name == "vary";
-      const std::string value = of_case ? " -x -a '" + joined(keys) + "'" : option.takes_value ? " -r" : "";
+      const Words& offered = of_case ? keys : option.choices;
+      const std::string value = !offered.empty()     ? " -x -a '" + joined(offered) + "'"
+                                : option.takes_value ? " -r"
+                                                     : "";
       text += fmt::format("complete -c softgrain -n '__fish_seen_subcommand_from {}' -l {}{} -d {}\n",
                           verb.name, option.name, value, quoted(option.text, "\\'"));
     }
@@ -142,9 +270,7 @@ std::string fish_completion(const std::vector<VerbWords>& verbs) {
 void add_completion_verb(CLI::App& app) {
   auto* verb = app.add_subcommand("completion", "Print what makes a shell complete verbs, options and keys");
   auto shell = std::make_shared<std::string>();
-  verb->add_option("SHELL", *shell, "bash, zsh or fish")
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}).description(""))
-      ->required();
+  take_one_of(verb->add_option("SHELL", *shell, "bash, zsh or fish")->required(), {"bash", "zsh", "fish"});
   verb->footer("Example:\n  source <(softgrain completion bash)    in ~/.bashrc");
   verb->callback([shell, &app] {
     const auto verbs = words_of(app);

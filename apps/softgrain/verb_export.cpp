@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "python_program.hpp"
+#include "python_verbs.hpp"
 #include "softgrain/contact/contact_problem.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/create.hpp"
@@ -23,19 +23,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct ExportArguments {
-  std::string run, format, frame, file;
+struct FclibArguments {
+  std::string run, file;
   std::int64_t step = 0;
 };
-
-std::vector<std::string> words_of(const ExportArguments& arguments) {
-  std::vector<std::string> words{"--to=" + arguments.format};
-  if (!arguments.frame.empty()) words.push_back("--frame=" + arguments.frame);
-  if (!arguments.file.empty()) words.push_back("--output=" + arguments.file);
-  words.emplace_back("--");
-  words.push_back(arguments.run);
-  return words;
-}
 
 /// A run as it was after a step: from the newest intact snapshot that is not younger, and on from there.
 std::unique_ptr<Simulation> simulation_after(const RunPaths& paths, std::int64_t step) {
@@ -59,9 +50,8 @@ std::unique_ptr<Simulation> simulation_after(const RunPaths& paths, std::int64_t
   return simulation;
 }
 
-void export_contact_problem(const ExportArguments& arguments) {
+void export_contact_problem(const FclibArguments& arguments) {
   require(arguments.step >= 1, "--to fclib needs the step whose contact problem is wanted: --step N, from 1");
-  require(arguments.frame.empty(), "--to fclib takes --step, not --frame");
   const RunPaths paths{arguments.run};
   require(fs::exists(paths.run_file()), "{} is not a run's directory: it has no run.json", arguments.run);
   const auto simulation = simulation_after(paths, arguments.step - 1);
@@ -84,35 +74,17 @@ void export_contact_problem(const ExportArguments& arguments) {
 }  // namespace
 
 void add_export_verb(CLI::App& app) {
-  auto* verb = app.add_subcommand("export", "Write snapshots for other programs");
-  auto arguments = std::make_shared<ExportArguments>();
-  verb->add_option("RUN", arguments->run, "a run's directory")->required();
-  verb->add_option("--to", arguments->format, "xyz, lammps, csv, svg or fclib")
-      ->check(CLI::IsMember({"xyz", "lammps", "csv", "svg", "fclib"}).description(""))
-      ->type_name("FORMAT")
-      ->required();
-  verb->add_option("--frame", arguments->frame,
-                   "snapshot, from 0, or from the end: -1 (default: all; csv and svg: the last)")
-      ->check(CLI::TypeValidator<int>().description(""))
-      ->type_name("N");
-  verb->add_option("--step", arguments->step, "of the run, from 1: whose contact problem fclib writes")
-      ->type_name("N");
-  verb->add_option("-o,--output", arguments->file, "where it goes (default: RUN/export/NAME)")
-      ->type_name("FILE");
-  verb->footer(
-      "Examples:\n"
-      "  softgrain export squeeze/case_run --to xyz          all frames, extended XYZ: opens in OVITO\n"
-      "  softgrain export squeeze/case_run --to svg --frame -1 -o end.svg\n"
-      "  softgrain export squeeze/case_run --to fclib --step 400   what that step had to solve; "
-      "`softgrain solve` reads it\n"
-      "\nxyz, lammps: particles with radius, grain and pressure. csv: all fields of the particles. svg: a "
-      "picture.\n"
-      "fclib: W, q and mu of one step, made again from the snapshot before it.\n"
-      "All but fclib need Python with NumPy and h5py: /usr/bin/python3, or what SOFTGRAIN_PYTHON names.");
-  verb->callback([arguments] {
-    if (arguments->format == "fclib") return export_contact_problem(*arguments);
-    require(arguments->step == 0, "--step belongs to --to fclib; snapshots are chosen by --frame");
-    become_python("export", words_of(*arguments));
+  auto* verb = add_python_verb(app, "export");
+  verb->callback([verb] {
+    const bool fclib = verb->get_option("--to")->as<std::string>() == "fclib";
+    const auto* step = verb->get_option("--step");
+    require(fclib || step->count() == 0, "--step belongs to --to fclib; snapshots are chosen by --frame");
+    if (!fclib) carry_out_in_python(*verb);
+    require(verb->get_option("--frame")->count() == 0, "--to fclib takes --step, not --frame");
+    const auto* file = verb->get_option("--output");
+    export_contact_problem({.run = verb->get_option("RUN")->as<std::string>(),
+                            .file = file->count() > 0 ? file->as<std::string>() : "",
+                            .step = step->count() > 0 ? step->as<std::int64_t>() : 0});
   });
 }
 

@@ -3,7 +3,10 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
+#include "choices.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/io/case_text.hpp"
 #include "softgrain/io/file.hpp"
@@ -54,7 +57,10 @@ void add_new_verb(CLI::App& app) {
   options->template_name = case_templates().front().name;
   CLI::App* verb = app.add_subcommand("new", "Write NAME/case.toml, commented, ready to run");
   verb->add_option("NAME", options->directory, "directory to make")->required();
-  verb->add_option("--template", options->template_name, "what to start from")->capture_default_str();
+  std::vector<std::string> names;
+  for (const CaseTemplate& start : case_templates()) names.push_back(start.name);
+  offer(verb->add_option("--template", options->template_name, "what to start from")->capture_default_str(),
+        names);
   verb->footer(list_of_templates() + "\nExample:\n  softgrain new squeeze --template diametral-bpm");
   verb->callback([options] { write_new_case(*options); });
 }

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 
+#include "choices.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/experiment/check_case.hpp"
@@ -54,7 +55,8 @@ void add_run_options(CLI::App& verb, RunOptions& options) {
   verb.add_option("--stop-after", options.stop_after,
                   "wall time, as \"90 min\": then write a snapshot and exit with code 75")
       ->type_name("TIME");
-  verb.add_option("--progress", options.progress, "auto, tty, plain or none")
+  offer(verb.add_option("--progress", options.progress, "auto, tty, plain or none"),
+        {"auto", "tty", "plain", "none"})
       ->transform(CLI::CheckedTransformer(styles).description(""))
       ->type_name("STYLE");
   auto* quiet = verb.add_flag("-q,--quiet", options.quiet, "print nothing but errors");

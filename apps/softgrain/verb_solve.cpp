@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "choices.hpp"
 #include "softgrain/contact/contact_problem.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/io/fclib.hpp"
@@ -98,9 +99,9 @@ void add_solve_verb(CLI::App& app) {
   verb->add_option(
       "-o,--output", options->output,
       "HDF5 file for the problem, local, and its solution: impulses solution/r, velocities solution/u");
-  verb->add_option("--method", options->method, "nesterov, nlgs, or auto: both by turns until one converges")
-      ->check(CLI::IsMember({"auto", "nesterov", "nlgs"}))
-      ->capture_default_str();
+  auto* method = verb->add_option("--method", options->method,
+                                  "nesterov, nlgs, or auto: both by turns until one converges");
+  take_one_of(method, {"auto", "nesterov", "nlgs"})->capture_default_str();
   verb->add_option("--tolerance", options->solver.tolerance, "on the natural-map residual over |q|")
       ->capture_default_str();
   verb->add_option("--max-sweeps", options->solver.max_sweeps, "sweeps of nlgs, iterations of nesterov, each")

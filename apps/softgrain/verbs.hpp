@@ -4,7 +4,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace softgrain {
 
@@ -25,6 +26,9 @@ struct CaseArguments {
 };
 void add_case_arguments(CLI::App& verb, CaseArguments& arguments);
 
+/// Lets an option take a directory made by `new`, or a file's name without .toml.
+void complete_case_path_of(CLI::Option& option);
+
 /// A check of CLI11 for what is counted: "" for a whole number from 1 on, else what is wrong.
 std::string at_least_one(const std::string& word);
 
@@ -39,12 +43,8 @@ void add_schema_verb(CLI::App& app);
 void add_doctor_verb(CLI::App& app);
 void add_bench_verb(CLI::App& app);
 void add_run_verb(CLI::App& app);  // run and resume
-void add_sweep_verb(CLI::App& app);
-void add_reproduce_verb(CLI::App& app);
-void add_plot_verb(CLI::App& app);
 void add_report_verb(CLI::App& app);
 void add_export_verb(CLI::App& app);
-void add_paraview_verb(CLI::App& app);
 void add_info_verb(CLI::App& app);
 void add_solve_verb(CLI::App& app);
 void add_completion_verb(CLI::App& app);

@@ -13,9 +13,17 @@ if TYPE_CHECKING:
 
 open = open_run  # softgrain.open reads well where it is used; here it hides the builtin on purpose
 
+__version__ = "0.1.0"
+
 COMPILED = {"Simulation": "simulation", "Grain": "simulation", "set_threads": "_core", "threads": "_core"}
 
-__all__ = ["Case", "CaseError", "DoubtfulRun", "NotARun", "NotRecorded", "Run", "RunFailed", "Snapshot", "open", "run_case"]
+__all__ = ["Case", "CaseError", "DoubtfulRun", "NotARun", "NotRecorded", "Run", "RunFailed", "Snapshot", "__version__", "open",
+           "run_case"]
+
+
+def __dir__():
+    """With what is loaded only when it is asked for."""
+    return sorted({*globals(), *COMPILED})
 
 
 def __getattr__(name):

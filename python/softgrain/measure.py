@@ -1,4 +1,4 @@
-"""What the stress-strain curve of a grain between two plates says. Compression counts positive."""
+"""What the stress-strain curve of a grain between two walls says. Compression counts positive."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from .run import NotRecorded
 
-PLATE_STRESSES = ("stress_top", "stress_bottom")
+WALL_STRESSES = ("stress_top", "stress_bottom")
 LOADING, UNLOADING, RELOADING = "loading", "unloading", "reloading"
 
 
@@ -35,11 +35,11 @@ class Unloading(NamedTuple):
 
 
 def vertical_stress(series):
-    """sigma = F/L, the mean of the two plates [Pa]; one plate alone if only it was recorded."""
-    plates = [series[name] for name in PLATE_STRESSES if name in series]
-    if not plates:
+    """sigma = F/L, the mean of the two walls [Pa]; one wall alone if only it was recorded."""
+    walls = [series[name] for name in WALL_STRESSES if name in series]
+    if not walls:
         raise NotRecorded("series.csv has neither stress_top nor stress_bottom")
-    return np.mean(plates, axis=0)
+    return np.mean(walls, axis=0)
 
 
 def branches(strain):

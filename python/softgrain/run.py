@@ -18,7 +18,7 @@ class NotARun(ValueError):
     """The directory holds no run of softgrain."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Snapshot:
     """The state at one time: what can be drawn. Arrays are indexed by particle, by contact or by wall.
 
@@ -27,7 +27,8 @@ class Snapshot:
     step: int
     time: float  # [s]
     particles: dict  # position (n, 2) [m], radius (n,) [m], and any field by particle
-    contacts: dict = field(default_factory=dict)  # pair (m, 2), force (m,) [N/m]; elastic: total_force, normal, position (m, 2)
+    contacts: dict = field(default_factory=dict)  # pair (m, 2), force (m,), tangential_force (m,) [N/m];
+    #                                               of elastic grains total_force, normal, position (m, 2) instead of the last
     walls: np.ndarray = field(default_factory=lambda: np.empty((0, 4)))  # x0 y0 x1 y1 [m]
     outlines: dict = field(default_factory=dict)  # position (v, 2) [m], grain (v,): counter-clockwise polygons
 
@@ -35,6 +36,19 @@ class Snapshot:
     def contacts_of_grains(self) -> bool:
         """Whether contacts are between grains instead of between particles."""
         return "position" in self.contacts
+
+    def __repr__(self) -> str:
+        """Names and sizes, no arrays."""
+        parts = [f"{name}: {', '.join(arrays)} ({len(next(iter(arrays.values())))})" for name, arrays in
+                 (("particles", self.particles), ("contacts", self.contacts), ("outlines", self.outlines)) if arrays]
+        return f"<Snapshot of step {self.step}, {self.time:.6g} s; {'; '.join([*parts, f'walls: {len(self.walls)}'])}>"
+
+    def contact_table(self) -> dict[str, np.ndarray]:
+        """Columns a, b, wall, grain_a, grain_b, normal_x, normal_y, x, y [m], normal_force, tangential_force [N/m]:
+        `pandas.DataFrame(snapshot.contact_table())`; what they mean: softgrain.export.contacts."""
+        from .export.contacts import contact_table
+
+        return contact_table(self)
 
     def bodies(self) -> np.ndarray:
         """Where what `contacts["pair"]` counts lies, walls left out (n, 2) [m]: particles, or the centres of elastic grains."""
@@ -58,17 +72,20 @@ class Snapshot:
                 raise OSError(f"{path}: no snapshot: it has no /scene/particles/position")
             scene = file["scene"]
             walls = scene["walls"][()] if "walls" in scene else ()
+            contacts = _arrays(scene, "contacts")
+            if "checkpoint/contact_impulse" in file and "force" in contacts:
+                contacts |= _tangential_force(contacts["force"], file["checkpoint/contact_impulse"][()])
             return cls(
                 step=int(file.attrs.get("step", 0)),
                 time=float(file.attrs.get("time", 0)),
                 particles=_arrays(scene, "particles"),
-                contacts=_arrays(scene, "contacts"),
+                contacts=contacts,
                 walls=np.asarray(walls, float).reshape(-1, 4),
                 outlines=_arrays(scene, "outlines"),
             )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Run:
     """A run's directory. `run[i]` reads snapshot i; `len(run)` counts them; the rest is read when asked."""
 
@@ -80,7 +97,7 @@ class Run:
 
     @property
     def plot(self) -> "Plots":
-        """The figures of this run: `run.plot.curve()`, `.grain()`, `.diagnostics()`."""
+        """The figures of this run: `run.plot.curve()`, `.grain()`, `.packing()`, `.diagnostics()`."""
         return Plots(self)
 
     @cached_property
@@ -119,6 +136,11 @@ class Run:
         """Paths of the snapshots, oldest first: `s000123.h5` is of step 123, whatever the width of the number."""
         return [path for _, path in sorted(_numbered(self.path / "snap", "s", ".h5").items())]
 
+    @cached_property
+    def times(self) -> np.ndarray:
+        """Of the snapshots [s]."""
+        return np.array([_time(path) for path in self.snapshots])
+
     def vtk_files(self, kind: str) -> dict[int, Path]:
         """Step -> `vtk/KIND_000123.vtp`, as far as they are there; kind: particles, contacts or walls."""
         return _numbered(self.path / "vtk", f"{kind}_", ".vtp")
@@ -132,6 +154,11 @@ class Run:
 
     def __getitem__(self, index: int) -> Snapshot:
         return Snapshot.read(self.snapshots[index])
+
+    def __repr__(self) -> str:
+        state = self.info.get("state", "not begun")
+        rows = len(next(iter(self.series.values()), ()))
+        return f"<Run '{self.path}': {state}, {rows} rows, {len(self)} snapshots>"
 
     def _repr_html_(self) -> str:
         """What a notebook shows: state, verdict and the last row."""
@@ -154,6 +181,10 @@ class Plots:
     def grain(self):
         """The particles at the moments that matter."""
         return self._draw("draw_grain", self.run)
+
+    def packing(self):
+        """Coordination number and packing fraction."""
+        return self._draw("draw_packing", [self.run])
 
     def diagnostics(self):
         """What the solver and the energies did."""
@@ -186,6 +217,11 @@ def _numbered(folder, prefix, suffix):
     return {int(number): path for number, path in numbers if number.isdigit()}
 
 
+def _time(path):
+    with _open_hdf5(path) as file:
+        return float(file.attrs.get("time", 0))
+
+
 def _open_hdf5(path):
     """To read, without a lock: snapshots never change, and not every file system has locks."""
     import h5py
@@ -202,6 +238,14 @@ def _arrays(scene, name):
     arrays = {key: data[()] for key, data in scene[name].items()}
     # A scalar field may be stored as one column.
     return {key: a[:, 0] if a.ndim == 2 and a.shape[1] == 1 else a for key, a in arrays.items()}
+
+
+def _tangential_force(force, impulse):
+    """Of bonded grains, whose scene has the normal forces of the contacts that push, from all impulses (p_n, p_t)."""
+    pushing = impulse[impulse[:, 0] > 0] if impulse.ndim == 2 else np.empty((0, 2))
+    if len(pushing) != len(force):
+        return {}
+    return {"tangential_force": force * pushing[:, 1] / pushing[:, 0]}
 
 
 def _read_series(path):

@@ -28,7 +28,7 @@ class Simulation(CompiledSimulation):
 
     def __init__(self, case: Case | dict | str | Path, motion: Callable[[float], float] | None = None,
                  duration: float | None = None):
-        """motion: a loading path instead of the case's, for `duration` [s]: the rate of the distance of the plates [m/s]
+        """motion: a loading path instead of the case's, for `duration` [s]: the rate of the distance of the walls [m/s]
         at a time [s], negative while they come together. It is asked once a step."""
         case = case if isinstance(case, Case) else Case(case)
         super().__init__(str(case.path), [f"{key}={value}" for key, value in case.values])

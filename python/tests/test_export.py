@@ -11,6 +11,7 @@ import sys
 import tempfile
 import types
 import unittest
+import unittest.mock
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -20,10 +21,12 @@ import numpy as np
 import synthetic
 
 import softgrain
+from softgrain import colours, picture
 from softgrain.export import __main__
+from softgrain.export.contacts import contact_table
 from softgrain.export.paraview import pressure_range
 from softgrain.export.particles import box
-from softgrain.export.picture import outline_polygons
+from softgrain.picture import outlines
 
 SQUARE = np.array([(0, 0), (2e-3, 0), (2e-3, 2e-3), (0, 2e-3)])
 
@@ -135,12 +138,104 @@ class Pictures(Temporary):
         self.assertAlmostEqual(float(disks[0].get("r")), scale[0] * synthetic.RADIUS, places=1)
         self.assertEqual(len(root.findall("{*}line")), 2)
 
-    def test_elastic_grains_are_their_outlines_the_more_pressed_the_brighter(self):
+    def test_each_of_many_grains_is_its_outline_the_more_pressed_the_brighter(self):
         self.add_grains()
-        polygons = self.svg().findall("{*}polygon")
+        with unittest.mock.patch.object(picture, "MOST_GRAINS_WITH_FIELDS", 1):
+            polygons = self.svg().findall("{*}polygon")
         self.assertEqual([len(p.get("points").split()) for p in polygons], [4, 4])
-        green = [int(p.get("fill")[3:5], 16) for p in polygons]
-        self.assertLess(green[0], green[1])  # pressure rises with the particle's number
+        red = [int(p.get("fill")[1:3], 16) for p in polygons]
+        self.assertGreater(red[1], red[0])  # pressure rises with the particle's number, from violet to orange
+
+    def test_all_frames_have_one_place_one_scale_and_one_range_of_colours(self):
+        with h5py.File(self.run_of_bonds.snapshots[0], "r+") as file:  # the first hardly pressed
+            file["scene/particles/pressure"][...] *= 1e-6
+        first, last = self.svg("--frame=0"), self.svg("--frame=-1")
+        self.assertEqual(first.get("viewBox"), last.get("viewBox"))
+        words = [[text.text for text in root.findall("{*}text")] for root in (first, last)]
+        self.assertEqual(words[0], words[1])
+        self.assertIn("pressure [kPa]", words[0])
+        self.assertEqual(len({disk.get("fill") for disk in first.findall("{*}circle")}), 1)
+        self.assertGreater(len({disk.get("fill") for disk in last.findall("{*}circle")}), 20)
+
+    def test_chains_are_as_wide_as_their_forces_are_large(self):
+        lines = self.svg().findall("{*}g/{*}line")
+        widths = np.array([float(line.get("stroke-width")) for line in lines])
+        force = np.sort(self.run_of_bonds[-1].contacts["force"])
+        np.testing.assert_allclose(widths / widths[-1], force / force[-1], atol=2e-3)
+
+
+class Colours(unittest.TestCase):
+    def test_maps_are_those_of_the_page(self):
+        source = (Path(__file__).resolve().parents[2] / "viewer/src/colours.ts").read_text()
+        maps = dict(re.findall(r'(\w+):\s+"([0-9a-f]{102})"', source))
+        self.assertEqual(maps, colours.MAPS)
+
+    def test_a_range_begins_at_zero_or_is_symmetric_and_leaves_out_the_outermost(self):
+        rising = np.linspace(0, 100, 101)
+        self.assertEqual(colours.range_of(rising), ("cividis", 0, 99))
+        self.assertEqual(colours.range_of(-rising), ("cividis", -99, 0))
+        self.assertEqual(colours.range_of(rising - 30), ("PuOr", -69, 69))
+        self.assertEqual(colours.range_of([np.nan]), ("cividis", 0, 1))
+        self.assertEqual(colours.range_of([0.99, 1.0, 1.0, 1.01]).map, "viridis")  # close together, far from zero
+
+    def test_the_ends_have_the_ends_of_the_map(self):
+        scale = colours.range_of([0, 1, 1])
+        self.assertEqual(scale.hexadecimal([-5, 0, 1, 9]), ["#00224e", "#00224e", "#fee838", "#fee838"])
+
+
+class Contacts(Temporary):
+    def table(self, *arguments):
+        code, path, err = self.export("--to=contacts", *arguments)
+        self.assertEqual(code, 0, err)
+        header, *rows = path.read_text().splitlines()
+        return dict(zip(header.split(","), np.array([row.split(",") for row in rows], float).T))
+
+    def test_bonded_normals_go_from_centre_to_centre_and_places_lie_between(self):
+        table, snapshot = self.table(), self.run_of_bonds[-1]
+        self.assertEqual(list(table), ["a", "b", "wall", "grain_a", "grain_b", "normal_x", "normal_y", "x[m]", "y[m]",
+                                       "normal_force[N/m]"])
+        a, b = snapshot.contacts["pair"].T
+        d = snapshot.particles["position"][b] - snapshot.particles["position"][a]
+        np.testing.assert_allclose(table["normal_x"], d[:, 0] / np.hypot(*d.T), rtol=1e-6, atol=1e-8)
+        np.testing.assert_allclose(table["normal_force[N/m]"], snapshot.contacts["force"])
+        self.assertTrue((table["wall"] == -1).all())
+
+    def test_a_wall_is_met_along_its_normal_and_the_shear_is_that_of_the_checkpoint(self):
+        position = self.run_of_bonds[-1].particles["position"]
+        top, count = int(position[:, 1].argmax()), len(position)
+        with h5py.File(self.run_of_bonds.snapshots[-1], "r+") as file:
+            contacts = file["scene/contacts"]
+            del contacts["pair"], contacts["force"]
+            contacts["pair"], contacts["force"] = [[0, 1], [top, count + 1]], [10.0, 30.0]
+            file["checkpoint/contact_impulse"] = [[2.0, -1.0], [0.0, 0.0], [6.0, 3.0]]  # the second does not push
+        table = self.table()
+        self.assertEqual([table[name][1] for name in ("b", "wall", "grain_b", "normal_x", "normal_y")], [-1, 1, -1, 0, 1])
+        self.assertAlmostEqual(table["y[m]"][1], position[top, 1] + synthetic.RADIUS)
+        np.testing.assert_allclose(table["tangential_force[N/m]"], [-5, 15])
+
+    def test_elastic_grains_have_their_own_normals_places_and_forces(self):
+        self.add_grains()
+        with h5py.File(self.run_of_bonds.snapshots[-1], "r+") as file:
+            contacts = file["scene/contacts"]
+            del contacts["pair"], contacts["force"]
+            contacts["pair"], contacts["force"] = [[0, 1], [1, 3]], [4.0, 5.0]
+            contacts["normal"], contacts["position"] = [[0.6, 0.8], [0.0, 1.0]], [[1e-3, 2e-3], [3e-3, 4e-3]]
+            contacts["total_force"] = 4 * np.array([[0.6, 0.8], [0, 1.25]]) + [[-1.6, 1.2], [-7, 0]]
+        table = self.table()
+        np.testing.assert_allclose(table["tangential_force[N/m]"], [2, 7])  # along (-0.8, 0.6) and (-1, 0)
+        self.assertEqual(table["b"].tolist(), [1, -1])
+        self.assertEqual(table["wall"].tolist(), [-1, 1])
+        self.assertEqual(table["grain_a"].tolist(), [0, 1])
+        np.testing.assert_allclose(table["y[m]"], [2e-3, 4e-3])
+
+    def test_a_snapshot_without_contacts_is_named(self):
+        with h5py.File(self.run_of_bonds.snapshots[-1], "r+") as file:
+            del file["scene/contacts"]
+        code, _, err = self.export("--to=contacts")
+        self.assertEqual(code, 2)
+        self.assertIn("no contacts", err)
+        with self.assertRaises(softgrain.NotRecorded):
+            contact_table(self.run_of_bonds[-1])
 
 
 class Paraview(Temporary):
@@ -251,7 +346,7 @@ class Paraview(Temporary):
 class Outlines(Temporary):
     def test_each_grain_is_a_polygon(self):
         self.add_grains()
-        polygons = outline_polygons(self.run_of_bonds[0])
+        polygons = outlines(self.run_of_bonds[0])
         self.assertEqual([grain for grain, _ in polygons], [0, 1])
         np.testing.assert_array_equal(polygons[0][1], SQUARE)
 

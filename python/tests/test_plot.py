@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 import warnings
 from itertools import combinations
 from pathlib import Path
@@ -18,7 +19,7 @@ import synthetic
 from PIL import Image
 
 import softgrain
-from softgrain import plot
+from softgrain import picture, plot
 from softgrain.plot.__main__ import main
 from softgrain.plot.rows import Forces, Layers, Pressure
 from softgrain.plot.stages import choose_stages
@@ -69,13 +70,13 @@ class Program(Temporary):
                                          "grain-fast.png", "grain-slow.png"])
 
     def test_a_run_of_one_row_is_drawn_without_a_warning(self):
-        run = self.write(columns=(*synthetic.COLUMNS, "phi"))
+        run = self.write(columns=(*synthetic.COLUMNS, "phi", "z"))
         table = run / "series.csv"
         table.write_text("\n".join(table.read_text().splitlines()[:2]) + "\n")
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             code, files, err = self.plot(run)
-        self.assertEqual((code, len(files), err), (0, 3, ""))
+        self.assertEqual((code, len(files), err), (0, 4, ""))
 
     def test_a_figure_that_the_data_do_not_allow_is_named_and_the_others_are_drawn(self):
         code, files, err = self.plot(self.write(snapshots=0))
@@ -193,26 +194,40 @@ class Pictures(Temporary):
             words = " ".join(text.get_text() for text in figure.findobj(matplotlib.text.Text))
             self.assertEqual(words.count("plateau"), plateaus)
 
+    def test_a_packing_shows_z_over_phi_and_phi_over_strain_without_the_way_back(self):
+        run = self.open(columns=("strain", "phi", "phi_0", "z", "z_no_rattlers", "z_with_walls"))
+        strain = run.series["strain"]
+        run.series["phi"][:], run.series["z"][:] = 0.7 + strain, 10 * strain
+        with plot.style():
+            left, right = plot.draw_packing([run]).axes
+        z, phi = left.lines[0], right.lines[0]
+        np.testing.assert_allclose(z.get_ydata(), 10 * (z.get_xdata() - 0.7), atol=1e-12)
+        np.testing.assert_allclose(phi.get_ydata(), 0.7 + phi.get_xdata())
+        self.assertTrue((np.diff(phi.get_xdata()) > 0).all())
+        self.assertEqual(len(left.lines), 3)
+        with self.assertRaises(softgrain.NotRecorded):
+            plot.draw_packing([self.open("grain")])
+
     def test_one_colour_range_serves_the_whole_run(self):
         run = self.open()
         snapshots = [run[i] for i in range(len(run))]
         quiet, loud = snapshots[0], snapshots[1]
         quiet.particles["pressure"] = np.full(50, 1e3)
         loud.particles["pressure"] = np.linspace(0, 2e6, 50)
-        norm = Pressure([quiet, loud]).scale.norm
-        self.assertEqual(norm.vmin, 0)
-        self.assertAlmostEqual(norm.vmax, 1.95, delta=0.1)
+        scale = Pressure([quiet, loud]).range
+        self.assertEqual(scale.low, 0)
+        self.assertAlmostEqual(scale.high, 1.9, delta=0.1)
 
     def test_tension_and_pressure_are_coloured_symmetrically_about_zero(self):
-        norm = Pressure([self.open()[0]]).scale.norm
-        self.assertEqual(norm.vmin, -norm.vmax)
+        scale = Pressure([self.open()[0]]).range
+        self.assertEqual(scale.low, -scale.high)
 
     def test_a_snapshot_before_the_first_step_does_not_set_the_scale(self):
         run = self.open()
         first, second = run[0], run[1]
         first.particles["pressure"] = np.full(len(first.particles["radius"]), -9e6)
         first.contacts.update(pair=np.empty((0, 2), int), force=np.empty(0))
-        self.assertLess(Pressure([first, second]).scale.norm.vmax, 2)
+        self.assertLess(Pressure([first, second]).range.high, 2)
 
     def test_layers_go_with_their_particles(self):
         run = self.open()
@@ -254,6 +269,9 @@ class Elastic(Temporary):
         for word in ("sigma_I", "characteristic", "plateau", "slope", "mean over"):
             self.assertNotIn(word, words)
         self.assertIn("loading", words)
+        self.assertNotIn("unloading the same", words)  # this one is plastic
+        run.series["stress_top"][:] = run.series["stress_bottom"][:] = 1e6 * run.series["strain"]
+        self.assertIn("loading, unloading the same", self.words(plot.draw_curve, [run]))
         with self.assertRaisesRegex(softgrain.NotRecorded, "elastic grains have no sigma_I"):
             plot.draw_curve([run], normalise=True)
 
@@ -274,6 +292,7 @@ class Elastic(Temporary):
             step=0, time=0.0,
             particles={"position": points, "radius": np.full(8, 0.28), "grain": np.repeat([0, 1], 4),
                        "pressure": np.arange(8.0), "J": np.ones(8)},
+            walls=np.array([[0, 0, 1, 0.0]]),
             contacts={"pair": np.array([[0, 1], [0, 2]]), "force": np.array([3.0, 1]), "position": np.array([[0.5, 1], [0.5, 0]])},
             outlines={"position": np.concatenate([square, square + (0, 1)]), "grain": np.repeat([0, 1], 4)})
         self.assertEqual(Layers([snapshot]).layer.tolist(), [0, 1])
@@ -284,32 +303,51 @@ class Elastic(Temporary):
         axes = Figure().add_subplot()
         Forces([snapshot]).draw(axes, 0, 1.0)
         lines = np.concatenate([np.asarray(c.get_segments()).reshape(-1, 2, 2) for c in axes.collections[1:]])
-        np.testing.assert_allclose(lines, [[[0.5, 0.5], [0.5, 1.5]]])  # between the centres; that with the wall is left out
+        np.testing.assert_allclose(lines[1], [[0.5, 0.5], [0.5, 1.5]])  # between the centres, the stronger above
+        np.testing.assert_allclose(lines[0][:, 0], [0.5, 0.5])  # to the foot of the wall
+        self.assertLess(lines[0][1, 1], 0.1)
 
 
 class Cells(unittest.TestCase):
-    def test_material_points_are_drawn_as_the_mean_of_each_cell_within_their_outline(self):
-        from matplotlib.cm import ScalarMappable
-        from matplotlib.figure import Figure
+    """The four Gauss points of each cell of two squares, cut in four."""
 
-        from softgrain.plot import scene
-
+    def snapshot(self, **changes):
+        gauss = np.array([(x, y) for y in (-1, 1) for x in (-1, 1)]) / np.sqrt(3)
+        middles = np.array([(x, y) for x in (0.25, 0.75) for y in (0.25, 0.75)])
+        points = np.concatenate([middle + 0.25 * gauss for middle in middles])
         corner = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-        inner = np.array([(x, y) for x in (0.25, 0.75) for y in (0.25, 0.75)])
-        points = np.concatenate([centre + 0.1 * (corner - 0.5) for centre in inner])
-        snapshot = softgrain.Snapshot(
-            step=0, time=0.0,
-            particles={"position": np.concatenate([points, points + [2, 0]]), "radius": np.full(32, 0.05),
-                       "grain": np.repeat([0, 1], 16), "stress": np.zeros((32, 4))},
-            outlines={"position": np.concatenate([corner, corner + [2, 0]]), "grain": np.repeat([0, 1], 4)})
-        self.assertTrue(scene.has_cells(snapshot))
-        axes = Figure().add_subplot()
-        values = np.tile([-1.0, 1.0, 3.0, 5.0], 8)  # a checkerboard within each cell
-        scene.draw_cells(axes, snapshot, values, ScalarMappable())
-        self.assertEqual(len(axes.collections), 2)
-        for surface in axes.collections:
-            self.assertEqual(surface.get_array().tolist(), [2.0] * 8)  # 4 cells, 4 corners
-            self.assertIsNotNone(surface.get_clip_path())
+        particles = {"position": np.concatenate([points, points + [2, 0]]), "radius": np.full(32, np.sqrt(1 / 16 / np.pi)),
+                     "grain": np.repeat([0, 1], 16), "J": np.ones(32), **changes}
+        return softgrain.Snapshot(step=0, time=0.0, particles=particles,
+                                  outlines={"position": np.concatenate([corner, corner + [2, 0]]), "grain": np.repeat([0, 1], 4)})
+
+    def test_cells_are_the_quadrangles_whose_gauss_points_the_points_are(self):
+        quads = picture.cells(self.snapshot())
+        self.assertEqual(quads.shape, (8, 4, 2))
+        np.testing.assert_allclose(quads[0].min(axis=0), [0, 0], atol=1e-12)
+        np.testing.assert_allclose(quads[0].max(axis=0), [0.5, 0.5], atol=1e-12)
+        x, y = np.moveaxis(quads, 2, 0)
+        areas = (x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1) / 2
+        np.testing.assert_allclose(areas, 0.25)  # in order around the middle, and together the squares
+
+    def test_a_field_is_the_mean_of_each_cell(self):
+        surface = picture.surface(self.snapshot(), np.tile([-1.0, 1.0, 3.0, 5.0], 8))  # a checkerboard in each cell
+        self.assertEqual(surface.values.tolist(), [2.0] * 8)
+        self.assertEqual((len(surface.polygons), len(surface.rims)), (8, 2))
+
+    def test_points_that_are_not_four_by_four_in_cells_are_disks_within_outlines(self):
+        mixed = self.snapshot(grain=np.tile([0, 1], 16))
+        self.assertIsNone(picture.cells(mixed))
+        surface = picture.surface(mixed, np.zeros(32))
+        self.assertEqual((len(surface.polygons), len(surface.centres), len(surface.rims)), (0, 32, 2))
+
+    def test_many_grains_have_their_mean_weighted_by_area(self):
+        snapshot = self.snapshot()
+        snapshot.particles["radius"][:16] = np.sqrt(np.arange(16))
+        with unittest.mock.patch.object(picture, "MOST_GRAINS_WITH_FIELDS", 1):
+            surface = picture.surface(snapshot, np.arange(32.0))
+        self.assertEqual(len(surface.polygons), 2)
+        np.testing.assert_allclose(surface.values, [(np.arange(16) ** 2).sum() / np.arange(16).sum(), 23.5])
 
 
 if __name__ == "__main__":

@@ -150,10 +150,11 @@ class Runs(unittest.TestCase):
         self.assertEqual((failure.exception.code, str(failure.exception)), (3, "one: broken"))
 
     def test_a_signal_ends_the_runs_and_no_figure_is_drawn(self):
-        environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1])}
+        environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1]),
+                       "SOFTGRAIN_PROGRAM": str(self.program)}
         runs = ("from softgrain.reproduce import __main__ as main, plan\n"
                 "main.planned_runs = lambda *_: [plan.PlannedRun(name, 't', {'contact.friction': 9}) for name in 'abc']\n"
-                f"raise SystemExit(main.main(['-o', {str(self.folder)!r}, '-j2', '--program', {str(self.program)!r}]))")
+                f"raise SystemExit(main.main(['-o', {str(self.folder)!r}, '-j2']))")
         process = subprocess.Popen([sys.executable, "-c", runs], env=environment, stderr=subprocess.PIPE, text=True)
         folder = self.folder / "runs"
         for _ in range(1000):

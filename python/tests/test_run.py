@@ -1,5 +1,6 @@
 """The reader, against files written here with csv text and h5py."""
 
+import re
 import tempfile
 import unittest
 from pathlib import Path
@@ -57,6 +58,16 @@ class Reading(unittest.TestCase):
                 refused += 1
         self.assertGreater(refused, 30)
 
+    def test_what_is_printed_of_a_run_and_of_a_snapshot_fits_on_a_line(self):
+        run = softgrain.open(synthetic.write_run(self.folder))
+        self.assertIn("225 rows, 7 snapshots", repr(run))
+        self.assertIn("<Snapshot of step 22400, 0.224 s; particles: position, pressure, radius (91); contacts:", repr(run[-1]))
+        self.assertLess(len(repr(run[-1])), 200)
+
+    def test_the_times_of_snapshots_are_those_in_them(self):
+        run = softgrain.open(synthetic.write_run(self.folder))
+        np.testing.assert_array_equal(run.times, [snapshot.time for snapshot in run])
+
     def test_a_run_that_has_only_begun_is_empty_but_readable(self):
         self.folder.mkdir()
         (self.folder / "case.toml").write_text("")
@@ -96,6 +107,15 @@ class Reading(unittest.TestCase):
         run.snapshots[0].write_bytes(b"not HDF5")
         with self.assertRaises(OSError):
             run[0]
+
+
+class Package(unittest.TestCase):
+    def test_its_version_is_that_of_the_program(self):
+        project = (Path(__file__).resolve().parents[2] / "CMakeLists.txt").read_text()
+        self.assertEqual(softgrain.__version__, re.search(r"project\(softgrain\s+VERSION ([\d.]+)", project)[1])
+
+    def test_it_offers_all_it_has_for_completion(self):
+        self.assertLessEqual({"Simulation", "Grain", "Case", "open", "__version__", "set_threads"}, set(dir(softgrain)))
 
 
 if __name__ == "__main__":

@@ -66,6 +66,21 @@ class Plans(unittest.TestCase):
                          ["softgrain", "run", "case.toml", "--set=solver.max_sweeps=9", "--set=contact.friction=0.5",
                           "--set=sample.seed=2", "-o", "out/runs/friction_0.5-seed_2", "--resume"])
 
+    def test_reals_are_counted_from_first_to_last_by_a_step_without_rounding(self):
+        values = lambda word: next(iter(self.plan(word).varied.values()))  # noqa: E731
+        self.assertEqual(values("contact.friction=0:0.5:0.1"), ["0.0", "0.1", "0.2", "0.3", "0.4", "0.5"])
+        self.assertEqual(values("contact.friction=0.1:0.34:0.1"), ["0.1", "0.2", "0.3"])
+        self.assertEqual(values("mpm.young_modulus=1:5:2 MPa,20 MPa"), ["1 MPa", "3 MPa", "5 MPa", "20 MPa"])
+        self.assertEqual(values("contact.friction=0.5:0:-0.25"), ["0.5", "0.25", "0.00"])
+        for word in ("0:0.1", "0:0.5:0", "0:0.5:-0.1", "0:x:1", "0:1e9:1"):
+            with self.assertRaisesRegex(PlanError, "FIRST:LAST:STEP"):
+                self.plan(f"contact.friction={word}")
+
+    def test_a_range_of_reals_with_dots_is_told_how_it_is_written(self):
+        for word in ("0..0.5", "0.1..0.5"):
+            with self.assertRaisesRegex(PlanError, "0:0.5:0.1"):
+                self.plan(f"contact.friction={word}")
+
     def test_quantities_and_lists_are_values_and_make_names_that_files_can_have(self):
         plan = self.plan("time.step=0.05 us,1e-7", "loading.unload_at=[0.1,0.2],[]")
         self.assertEqual(plan.varied["time.step"], ["0.05 us", "1e-7"])

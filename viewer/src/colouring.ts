@@ -15,6 +15,9 @@ export interface Colouring {
   values(frame: number): Float32Array;
 }
 
+/** Which values the colours range over: of the whole run, of the picture, or to the very ends. */
+export type RangeOver = "run" | "picture" | "ends";
+
 export function colourOf(colouring: Colouring, value: number): Rgb {
   const { map, low, high } = colouring;
   return map === "categories" ? categoryColour(value) : colourAt(map, (value - low) / (high - low || 1));
@@ -28,17 +31,32 @@ export function chainColour(colouring: Colouring | null): Rgb {
 /** What this run has the data for. */
 export function colourings(run: Run): Colouring[] {
   const found: Colouring[] = [];
-  const pressure = run.has("particle.pressure") ? "particle" : "grain";
-  if (run.has(`${pressure}.pressure`))
-    found.push(
-      ranged(run, "pressure", "pressure", "Pa", pressure, (k) => run.column(`${pressure}.pressure`, k)),
-    );
+  for (const { name, label, unit } of run.header.fields) {
+    const values = (frame: number) => run.column(`particle.${name}`, frame);
+    if (run.has(`particle.${name}`))
+      found.push(withMap(run, { key: name, label, unit, on: "particle", values }));
+  }
   if (run.has("grain.area"))
-    found.push(ranged(run, "area", "change of area", "%", "grain", (k) => areaChange(run, k)));
-  if (run.has("particle.coordination"))
-    found.push(counted(run, "particle", (k) => run.column("particle.coordination", k)));
-  else if (run.grains > 1) found.push(counted(run, "grain", (k) => contactsOfGrains(run, k)));
+    found.push(
+      withMap(run, {
+        key: "area",
+        label: "change of area",
+        unit: "%",
+        on: "grain",
+        values: (frame) => areaChange(run, frame),
+      }),
+    );
   if (run.grains > 1) {
+    if (!run.has("particle.coordination"))
+      found.push(
+        withMap(run, {
+          key: "contacts",
+          label: "contacts",
+          unit: "",
+          on: "grain",
+          values: (frame) => contactsOfGrains(run, frame),
+        }),
+      );
     const indices = Float32Array.from({ length: run.grains }, (_, g) => g);
     const plain = { key: "grain", label: "grain", unit: "", low: 0, high: 1 };
     found.push({ ...plain, on: "grain", map: "categories", values: () => indices });
@@ -68,34 +86,53 @@ export function contactsOfGrains(run: Run, frame: number): Float32Array {
   return Float32Array.from(neighbours, (set) => set.size);
 }
 
-type Values = (frame: number) => Float32Array;
+type Unranged = Pick<Colouring, "key" | "label" | "unit" | "on" | "values">;
 
-/** From 0, or symmetric about it where both signs are common; without the outermost 3 %. */
-function ranged(
-  run: Run,
-  key: string,
-  label: string,
-  unit: string,
-  on: "grain" | "particle",
-  values: Values,
-): Colouring {
-  const all = run.sample(12).flatMap((k) => [...thinned(values(k))]);
-  const low = Math.min(0, quantile(all, 0.03));
-  const high = Math.max(0, quantile(all, 0.97));
-  const common = { key, label, unit, on, values };
-  const reach = Math.max(-low, high) || 1;
-  if (Math.min(-low, high) > 0.1 * reach) return { ...common, map: "PuOr", low: -reach, high: reach };
-  return high >= -low
-    ? { ...common, map: "cividis", low: 0, high: reach }
-    : { ...common, map: "cividis", low: -reach, high: 0 };
+/** Before contacts carry forces, attraction alone makes pressures that would set the range. */
+function framesForRange(run: Run): number[] {
+  const frames = run.sample(12);
+  const pushed = frames.filter((frame) => run.contacts(frame).force.length > 0);
+  return pushed.length > 0 ? pushed : frames;
 }
 
-function counted(run: Run, on: "grain" | "particle", values: Values): Colouring {
-  const most = Math.max(
-    1,
-    ...run.sample(12).map((k) => thinned(values(k)).reduce((m, v) => Math.max(m, v), 0)),
-  );
-  return { key: "contacts", label: "contacts", unit: "", on, map: "viridis", low: 0, high: most, values };
+/** Whole numbers are counted; of others the outermost 1 % are left out. */
+function withMap(run: Run, plain: Unranged): Colouring {
+  const all = framesForRange(run).flatMap((frame) => [...thinned(plain.values(frame))]);
+  if (all.length > 0 && all.every((value) => value >= 0 && Number.isInteger(value))) {
+    const most = all.reduce((m, v) => Math.max(m, v), 1);
+    return { ...plain, map: "viridis", low: 0, high: most };
+  }
+  return { ...plain, ...rangeOf(all, 0.01) };
+}
+
+/** From 0, or symmetric about it where both signs are common; or between its ends where they are close together. */
+function rangeOf(all: number[], outermost: number): Pick<Colouring, "map" | "low" | "high"> {
+  const [least, most] = [quantile(all, outermost), quantile(all, 1 - outermost)];
+  if (least > 0.8 * most && most > least) return { map: "viridis", low: least, high: most };
+  const [low, high] = [Math.min(0, least), Math.max(0, most)];
+  const reach = Math.max(-low, high) || 1;
+  if (Math.min(-low, high) > 0.1 * reach) return { map: "PuOr", low: -reach, high: reach };
+  return high >= -low ? { map: "cividis", low: 0, high: reach } : { map: "cividis", low: -reach, high: 0 };
+}
+
+/** The same with the range that the reader wants: over other values, or between numbers of his own. */
+export function reranged(
+  run: Run,
+  colouring: Colouring,
+  over: RangeOver,
+  frame: number,
+  own: { low?: number; high?: number },
+): Colouring {
+  if (colouring.map === "categories") return colouring;
+  const counted = colouring.map === "viridis" && colouring.low === 0;
+  let ranged = colouring;
+  if (over === "picture")
+    ranged = { ...colouring, ...rangeOf([...colouring.values(frame)], counted ? 0 : 0.01) };
+  if (over === "ends") {
+    const all = framesForRange(run).flatMap((k) => [...colouring.values(k)]);
+    ranged = { ...colouring, ...rangeOf(all, 0) };
+  }
+  return { ...ranged, low: own.low ?? ranged.low, high: own.high ?? ranged.high };
 }
 
 /** At most a few thousand of them: enough for a range. */

@@ -3,8 +3,16 @@ import { categoryColour, css, gradient, Rgb } from "./colours";
 import { ForceScale } from "./picture";
 import { scaleFor, short, withUnit } from "./units";
 
-/** A bar with its ends and unit; squares where the colour only tells grains apart. */
-export function showLegend(parent: HTMLElement, colouring: Colouring | null): void {
+/**
+ * A bar with its ends and unit; squares where the colour only tells grains apart. The ends can be typed over:
+ * `take` gets what was typed, in SI, or nothing where the field was emptied.
+ */
+export function showLegend(
+  parent: HTMLElement,
+  colouring: Colouring | null,
+  take: (end: "low" | "high", value?: number) => void,
+): void {
+  if (parent.contains(document.activeElement)) return; // somebody types
   parent.replaceChildren();
   if (!colouring) return;
   const { low, high, label, unit, map } = colouring;
@@ -24,7 +32,21 @@ export function showLegend(parent: HTMLElement, colouring: Colouring | null): vo
   bar.style.background = gradient(map);
   const ticks = document.createElement("div");
   ticks.className = "ticks";
-  ticks.append(...[low, (low + high) / 2, high].map((value) => text(short(scale.factor * value))));
+  const end = (which: "low" | "high", value: number) => {
+    const input = document.createElement("input");
+    input.type = "text";
+    input.inputMode = "decimal";
+    input.value = short(scale.factor * value);
+    input.ariaLabel = `${which === "low" ? "Lower" : "Upper"} end of the colours`;
+    input.title = "Type a number; empty: the run's own";
+    input.addEventListener("change", () => {
+      const typed = Number(input.value.replace("−", "-").replace(",", "."));
+      input.blur();
+      take(which, input.value.trim() === "" || !Number.isFinite(typed) ? undefined : typed / scale.factor);
+    });
+    return input;
+  };
+  ticks.append(end("low", low), text(short(scale.factor * (low + high) * 0.5)), end("high", high));
   parent.append(text(scale.unit ? `${label} [${scale.unit}]` : label), bar, ticks);
 }
 

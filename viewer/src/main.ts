@@ -1,5 +1,5 @@
 // The page: state, and what happens when it changes.
-import { chainColour, Colouring, colourings } from "./colouring";
+import { chainColour, Colouring, colourings, RangeOver, reranged } from "./colouring";
 import { runColour } from "./colours";
 import { onKey } from "./keys";
 import { showForceKey, showLegend } from "./legend";
@@ -9,14 +9,16 @@ import { Pointer } from "./pointer";
 import { showProvenance } from "./provenance";
 import { Renderer } from "./renderer";
 import { Run } from "./run";
+import { savePicture } from "./save";
 import { valueAt } from "./series";
 import { short, withUnit } from "./units";
 
 const $ = <T extends HTMLElement = HTMLElement>(selector: string) => document.querySelector<T>(selector)!;
-const [slider, play, select, chains] = [
+const [slider, play, select, over, chains] = [
   $<HTMLInputElement>(".slider"),
   $<HTMLButtonElement>(".play"),
   $<HTMLSelectElement>(".colouring"),
+  $<HTMLSelectElement>(".over"),
   $<HTMLInputElement>(".chains input"),
 ];
 
@@ -25,6 +27,8 @@ class Page {
   private frame = 0;
   private playing = false;
   private highlight = -1;
+  /** Ends of the colours that were typed [SI]. */
+  private ends: { low?: number; high?: number } = {};
   private choices: Colouring[] = [];
   private renderer: Renderer | null = null;
   private plots: Plots;
@@ -36,12 +40,13 @@ class Page {
     } catch (error) {
       say(`The packing cannot be drawn here (${(error as Error).message}); the curves and numbers can.`);
     }
-    $("h1").textContent = document.title = runs.map((run) => run.name).join(", ");
+    $("h1").textContent = document.title;
     this.showRunChooser();
     this.plots = new Plots($(".plots"), runs, (frame) => this.seek(frame));
     showProvenance($("footer"), runs);
     this.listen();
     this.showRun(0);
+    this.seek(mostCompressed(this.run));
   }
 
   private get run(): Run {
@@ -51,7 +56,9 @@ class Page {
   private listen(): void {
     slider.addEventListener("input", () => this.seek(Number(slider.value)));
     play.addEventListener("click", () => this.togglePlay());
-    select.addEventListener("change", () => this.draw());
+    select.addEventListener("change", () => this.setEnds({}));
+    over.addEventListener("change", () => this.setEnds({}));
+    $(".save").addEventListener("click", () => this.save());
     chains.addEventListener("change", () => this.draw());
     $(".theme").addEventListener("click", () => this.toggleTheme());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.themeChanged());
@@ -107,6 +114,8 @@ class Page {
       String(Math.min(1.6, Math.max(0.75, this.renderer?.aspect ?? 1))),
     );
     $(".chains").hidden = !this.renderer?.forceScale;
+    $(".save").hidden = !this.renderer;
+    this.ends = {};
     slider.max = String(this.run.frames - 1);
     this.seek(Math.round(share * (this.run.frames - 1)));
   }
@@ -139,11 +148,22 @@ class Page {
     });
   }
 
+  private setEnds(ends: { low?: number; high?: number }): void {
+    this.ends = ends;
+    this.draw();
+  }
+
+  private get colouring(): Colouring | null {
+    const chosen = this.choices.find((choice) => choice.key === select.value);
+    return chosen ? reranged(this.run, chosen, over.value as RangeOver, this.frame, this.ends) : null;
+  }
+
   private drawNow(): void {
     if (!this.renderer) return;
-    const colouring = this.choices.find((choice) => choice.key === select.value) ?? null;
+    const { colouring } = this;
     this.renderer.draw(this.frame, { colouring, chains: chains.checked, highlight: this.highlight });
-    showLegend($(".legend"), colouring);
+    $(".over").hidden = !colouring || colouring.map === "categories";
+    showLegend($(".legend"), colouring, (end, value) => this.setEnds({ ...this.ends, [end]: value }));
     const forceScale = chains.checked ? this.renderer.forceScale : null;
     showForceKey($(".force"), forceScale, this.renderer.pixelsPerMetre, chainColour(colouring));
     $("canvas").setAttribute(
@@ -151,6 +171,18 @@ class Page {
       `Packing of ${this.run.name}, ${this.now()}, coloured by ${colouring?.label ?? "nothing"}`,
     );
     document.body.dataset.drawn = String(this.frame);
+  }
+
+  private save(): void {
+    const { colouring, renderer } = this;
+    if (!renderer) return;
+    savePicture($<HTMLCanvasElement>("canvas"), {
+      draw: (ratio) => renderer.draw(this.frame, { colouring, chains: chains.checked, highlight: -1 }, ratio),
+      colouring,
+      words: `${this.run.name}, ${this.now()}`,
+      name: `${this.run.name.replaceAll("/", "-")}-${this.run.header.steps[this.frame]}.png`,
+    });
+    this.draw();
   }
 
   private togglePlay(): void {
@@ -190,14 +222,19 @@ class Page {
   }
 }
 
-/** "compaction, mpm, 20 grains, friction 0.3". */
+/** The frame with the largest strain; the last one where the series has none. */
+function mostCompressed(run: Run): number {
+  const strains = run.header.times.map((time) => valueAt(run.series, "strain", time));
+  return strains.every(Number.isFinite) ? strains.indexOf(Math.max(...strains)) : run.frames - 1;
+}
+
+/** "compaction · mpm · 20 grains · friction 0.3". */
 function summary(run: Run): string {
-  const value = (key: string) =>
-    new RegExp(`^${key} = "?([^"\\n#]*?)"?\\s*(?:#.*)?$`, "m").exec(run.header.case)?.[1];
-  const words = [value("loading"), value("model")].filter(Boolean);
+  const { experiment, contact } = run.header.settings;
+  const words = [experiment?.loading, experiment?.model].filter(Boolean).map(String);
   if (run.grains > 1) words.push(`${run.grains} grains`);
   else if (!run.hasOutlines) words.push(`${run.column("particle.x", 0).length} primaries`);
-  if (value("friction")) words.push(`friction ${Number(value("friction"))}`);
+  if (contact) words.push(`friction ${contact.friction}`);
   return words.join(" · ");
 }
 

@@ -27,10 +27,20 @@ export interface Provenance {
   machine?: { cpu: string; threads: number };
 }
 
+/** What a particle carries: a column `particle.NAME`, and `grain.NAME` for the mean over a grain. */
+export interface Field {
+  name: string;
+  label: string;
+  unit: string;
+}
+
 export interface Header {
   name: string;
   run: Provenance;
   case: string;
+  /** The resolved case: tables of keys. */
+  settings: Record<string, Record<string, unknown>>;
+  fields: Field[];
   series: string;
   rows_every: number;
   snapshots_every: number;

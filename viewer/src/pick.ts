@@ -39,16 +39,15 @@ export function describe(run: Run, p: Places, frame: number, { kind, index }: Pi
   const of = (name: string) => run.column(`${kind}.${name}`, frame)[index];
   const lines: [string, string][] = [];
   const [x, y] = kind === "grain" ? [p.grainX[index], p.grainY[index]] : [p.x[index], p.y[index]];
-  if (run.has(`${kind}.pressure`))
-    lines.push([kind === "grain" ? "mean pressure" : "pressure", withUnit(of("pressure"), "Pa")]);
+  for (const { name, label, unit } of run.header.fields)
+    if (run.has(`${kind}.${name}`))
+      lines.push([kind === "grain" ? `mean ${label}` : label, withUnit(of(name), unit)]);
   if (kind === "grain" && run.has("grain.area")) {
     lines.push(["area", `${short(1e6 * of("area"))} mm²`]);
     lines.push(["change of area", `${short(areaChange(run, frame)[index])} %`]);
   }
   if (kind === "grain" && run.grains > 1)
     lines.push(["contacts", String(contactsOfGrains(run, frame)[index])]);
-  if (kind === "particle" && run.has("particle.coordination"))
-    lines.push(["contacts", String(Math.round(of("coordination")))]);
   if (kind === "particle") lines.push(["radius", withUnit(p.radius[index], "m")]);
   lines.push(["centre", `${withUnit(x, "m")}, ${withUnit(y, "m")}`]);
   return [[kind === "grain" ? `Grain ${index}` : `Primary ${index}`, ""], ...lines];

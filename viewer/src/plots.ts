@@ -12,7 +12,6 @@ const FIRST: [string, string][] = [
 ];
 const SECOND: [string, string][] = [
   ["phi", "z"],
-  ["phi_hull", "z"],
   ["phi_0", "z"],
   ["strain", "area_ratio"],
   ["strain", "contacts"],

@@ -99,9 +99,9 @@ export class Renderer {
     return [this.centre[0] + (px - w / 2) / s, this.centre[1] - (py - h / 2) / s];
   }
 
-  draw(frame: number, look: Look): void {
+  /** With `ratio` pixels for one of CSS. */
+  draw(frame: number, look: Look, ratio = Math.min(2, window.devicePixelRatio || 1)): void {
     const { gl, canvas, run } = this;
-    const ratio = Math.min(2, window.devicePixelRatio || 1);
     const [width, height] = [Math.round(canvas.clientWidth * ratio), Math.round(canvas.clientHeight * ratio)];
     if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
     gl.viewport(0, 0, width, height);

@@ -9,7 +9,7 @@ const PREFIXES: [number, string][] = [
   [1e-6, "µ"],
   [1e-9, "n"],
 ];
-const PREFIXED = ["Pa", "m", "s", "N/m", "J/m"];
+const PREFIXED = ["Pa", "m", "s", "m/s", "N/m", "J/m"];
 
 /** value [shown unit] = factor * value [SI]. */
 export interface Scale {
@@ -52,7 +52,6 @@ const SYMBOLS: Record<string, string> = {
   phi: "packing fraction Φ",
   z: "coordination number Z",
   phi_0: "packing fraction Φ₀, areas at the start",
-  phi_hull: "packing fraction Φ, hulls",
   stress_top: "stress, top",
   stress_bottom: "stress, bottom",
   stress_side: "stress, side",

@@ -1,6 +1,7 @@
 """Snapshots in the formats of other programs. On the command line: `softgrain export RUN --to FORMAT`."""
 
+from .contacts import write_contacts
 from .particles import write_csv, write_lammps, write_xyz
-from .picture import write_svg
+from .svg import scale_of, write_svg
 
-__all__ = ["write_csv", "write_lammps", "write_svg", "write_xyz"]
+__all__ = ["scale_of", "write_contacts", "write_csv", "write_lammps", "write_svg", "write_xyz"]

@@ -1,26 +1,18 @@
 """python3 -m softgrain.export RUN --to FORMAT: snapshots for other programs."""
 
-import argparse
 import sys
 from pathlib import Path
 
 import softgrain
 
-from . import write_csv, write_lammps, write_svg, write_xyz
+from .. import colours
+from ..options import parse
+from . import scale_of, write_contacts, write_csv, write_lammps, write_svg, write_xyz
 from .paraview import write_scene
 
 USAGE_ERROR, IO_ERROR = 2, 4  # exit codes, those of the program `softgrain`
 MOVIES = {"xyz": (write_xyz, "xyz"), "lammps": (write_lammps, "dump")}  # all frames in one file
-PICTURES = {"csv": (write_csv, "csv"), "svg": (write_svg, "svg")}  # of one frame
-
-
-def parse(arguments):
-    parser = argparse.ArgumentParser(prog="softgrain export", description="Writes snapshots for other programs.")
-    parser.add_argument("run", metavar="RUN", type=Path)
-    parser.add_argument("--to", choices=(*MOVIES, *PICTURES, "paraview"), required=True)
-    parser.add_argument("--frame", type=int, help="snapshot, from 0; -1 is the last")
-    parser.add_argument("-o", "--output", metavar="FILE", type=Path)
-    return parser.parse_args(arguments)
+ONE_FRAME = {"csv": (write_csv, "csv"), "contacts": (write_contacts, "contacts.csv"), "svg": (write_svg, "svg")}
 
 
 def export(options):
@@ -33,22 +25,32 @@ def export(options):
     frame = options.frame if options.frame is not None or options.to in MOVIES else -1
     if not -len(run) <= (frame or 0) < len(run):
         raise ValueError(f"{run.path} has {len(run)} snapshots; --frame {frame or 0} is none of them")
-    write, suffix = {**MOVIES, **PICTURES}[options.to]
+    if options.to not in {**MOVIES, **ONE_FRAME}:
+        raise ValueError(f"--to {options.to} is written by the program itself: softgrain export")
+    write, suffix = {**MOVIES, **ONE_FRAME}[options.to]
     name = run.name if frame is None else f"{run.name}_{run[frame].step:06d}"
-    path = options.output or run.path / "export" / f"{name}.{suffix}"
+    path = Path(options.output) if options.output else run.path / "export" / f"{name}.{suffix}"
     path.parent.mkdir(parents=True, exist_ok=True)
-    frames = range(len(run)) if frame is None else [frame]
     temporary = path.with_name(path.name + ".tmp")
     with temporary.open("w") as file:
-        write((run[i] for i in frames) if options.to in MOVIES else run[frame], file)
+        write(*what(run, options.to, frame), file)
     return temporary.replace(path)
 
 
+def what(run, form, frame):
+    """What the writer of a format takes before its file."""
+    if form in MOVIES:
+        return [run[i] for i in (range(len(run)) if frame is None else [frame])],
+    if form == "svg":
+        return run[frame], scale_of([run[i] for i in colours.sampled(len(run))])
+    return run[frame],
+
+
 def main(arguments=None):
-    options = parse(arguments)
+    options = parse("export", arguments)
     try:
         print(export(options))
-    except ValueError as error:
+    except (ValueError, softgrain.NotRecorded) as error:
         print(f"error: {error}", file=sys.stderr)
         return USAGE_ERROR
     except OSError as error:

@@ -6,7 +6,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from .picture import outline_polygons
+from ..picture import outlines
 
 SCRIPT = Path(__file__).with_name("paraview_scene.py")
 
@@ -56,7 +56,7 @@ def pvd_text(frames):
 
 def grains_vtp(snapshot):
     """The outlines as polygons: cell data grain and pressure [Pa], its mean over the grain's particles."""
-    polygons = outline_polygons(snapshot)
+    polygons = outlines(snapshot)
     vertices = np.concatenate([v for _, v in polygons])
     points = np.column_stack([vertices, np.zeros(len(vertices))])
     particles = snapshot.particles

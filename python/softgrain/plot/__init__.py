@@ -3,6 +3,7 @@
 from .curve import draw_curve
 from .diagnostics import draw_diagnostics
 from .grain import draw_grain
+from .packing import draw_packing
 from .style import save, style
 
-__all__ = ["draw_curve", "draw_diagnostics", "draw_grain", "save", "style"]
+__all__ = ["draw_curve", "draw_diagnostics", "draw_grain", "draw_packing", "save", "style"]

@@ -7,9 +7,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import NotRecorded, measure
-from .style import BLUE, GREEN, GREY, INK, MM, RUN_COLOURS, SINGLE_COLUMN, VERMILLION
+from .style import BLUE, GREEN, GREY, INK, MM, RUN_COLOURS, SINGLE_COLUMN, VERMILLION, millimetres
 
 HEIGHT = 62  # [mm]
+LEFT, RIGHT, BOTTOM, KEY_LINE = 12, 2.5, 9.5, 4  # margins; above, a line of the key for each curve [mm]
 BRANCH_COLOURS = {measure.UNLOADING: VERMILLION, measure.RELOADING: GREEN}
 
 
@@ -22,7 +23,7 @@ class Curve:
     stress: np.ndarray  # in units of `scale`
     scale: float  # 1 MPa, or sigma_I [Pa]
     characteristic_stress: float | None  # sigma_I [Pa]
-    plateau: measure.Plateau | None  # of a bonded grain between plates; all other stresses rise all the way
+    plateau: measure.Plateau | None  # of a bonded grain between walls; all other stresses rise all the way
     elastic_grain: bool = False  # one grain, which unloads as it was loaded and is smooth
 
 
@@ -31,7 +32,7 @@ def draw_curve(runs, labels=None, normalise=False):
     labels = labels or [run.name for run in runs]
     curves = [_curve(run, label, normalise) for run, label in zip(runs, labels)]
     characteristic = _common_characteristic_stress(curves)
-    figure = Figure(figsize=(SINGLE_COLUMN * MM, HEIGHT * MM), layout="constrained")
+    figure = Figure(figsize=(SINGLE_COLUMN * MM, HEIGHT * MM))
     axes, upper_axes = _axes(figure, curves, characteristic)
     if len(curves) == 1:
         _draw_branches(axes, curves[0])
@@ -42,9 +43,13 @@ def draw_curve(runs, labels=None, normalise=False):
     axes.set_xlabel(r"cumulative axial strain $\varepsilon$")
     axes.set_ylabel(r"vertical stress $\sigma/\sigma_I$" if normalise else r"vertical stress $\sigma$ [MPa]")
     axes.set_xlim(0, max(c.strain.max() for c in curves) * 1.02 or 0.01)
-    handles, words = axes.get_legend_handles_labels()
-    upper_axes.legend(handles, words, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.2, borderpad=0,
-                      ncols=3 if len(curves) == 1 else 1, columnspacing=1.2)
+    entries = axes.get_legend_handles_labels()
+    if upper_axes is not axes:
+        entries = [mine + others for mine, others in zip(entries, upper_axes.get_legend_handles_labels())]
+    columns = 2 if len(curves) == 1 else 1
+    millimetres(figure, LEFT, RIGHT, BOTTOM, KEY_LINE * -(-len(entries[0]) // columns) + 2, hspace=0.06)
+    upper_axes.legend(*entries, loc="lower left", bbox_to_anchor=(-(LEFT - 1) / (SINGLE_COLUMN - LEFT - RIGHT), 1),
+                      borderaxespad=0.2, borderpad=0, ncols=columns, columnspacing=1, handletextpad=0.5)
     return figure
 
 
@@ -63,8 +68,10 @@ def _curve(run, label, normalise):
 
 
 def _common_characteristic_stress(curves):
-    """sigma_I in the units of the curves, if it is the same in all of them within 5 %; else None."""
+    """sigma_I in the units of the curves, if all have it, the same within 5 %; else None."""
     values = [c.characteristic_stress / c.scale for c in curves if c.characteristic_stress]
+    if len(values) < len(curves):
+        return None
     return np.mean(values) if values and max(values) < 1.05 * min(values) else None
 
 
@@ -97,48 +104,43 @@ def _draw_branches(axes, curve):
     """One run: each kind of branch in its colour; the plateau and the unloading slopes in words."""
     strain, stress = curve.strain, curve.stress
     branches = measure.branches(strain)
+    eps, sigma = measure.envelope(strain, stress)
+    if curve.elastic_grain and _follows(strain, stress, eps, sigma):
+        axes.plot(eps, sigma, color=BLUE, lw=1.3, label="loading" + (", unloading the same" if len(branches) > 1 else ""))
+        return
     for branch in branches:
         look = dict(color=BLUE, alpha=0.4, lw=0.4)
         if branch.kind != measure.LOADING:
             look = dict(color=BRANCH_COLOURS[branch.kind], lw=0.8)
         axes.plot(strain[branch.samples], stress[branch.samples], **look)
-    eps, sigma = measure.envelope(strain, stress)
     if curve.elastic_grain:
         axes.plot(eps, sigma, color=BLUE, lw=1.3, label="loading", zorder=1.5)  # below the unloading, which it hides else
     else:
         axes.plot(eps, measure.moving_mean(eps, sigma), color=BLUE, lw=1.3, label="loading (mean over 1 %)")
     for kind, colour in BRANCH_COLOURS.items():
         if any(branch.kind == kind for branch in branches):
-            axes.plot([], [], color=colour, lw=0.8, label=kind)
+            axes.plot([], [], color=colour, lw=0.8, label=kind + (_slopes(curve) if kind == measure.UNLOADING else ""))
     _draw_plateau(axes, curve)
-    if not curve.elastic_grain:
-        _write_slopes(axes, curve)
+
+
+def _follows(strain, stress, eps, sigma):
+    """Whether unloading and reloading are the loading again, within a line's width."""
+    return abs(stress - np.interp(strain, eps, sigma)).max() < 0.01 * abs(sigma).max()
 
 
 def _draw_plateau(axes, curve):
     flat = curve.plateau
-    if flat is None:
-        return
-    axes.hlines(flat.mean, *flat.strain_range, color=INK, lw=0.6, ls=(0, (4, 2)), zorder=3)
-    text = f"plateau {_stress_text(flat.mean, curve)}"
-    _write(axes, text, (0.98, 1), (0, -3), "axes fraction", ha="right", va="top")
+    if flat is not None:
+        axes.hlines(flat.mean, *flat.strain_range, color=INK, lw=0.6, ls=(0, (4, 2)), zorder=3,
+                    label=f"plateau {_stress_text(flat.mean, curve)}")
 
 
-def _write_slopes(axes, curve):
+def _slopes(curve):
+    """", slope 3.6 MPa" of each unloading; elastic grains unload as they were loaded."""
+    slopes = [] if curve.elastic_grain else [unloading.slope for unloading in measure.unloadings(curve.strain, curve.stress)]
     unit = r"$\,\sigma_I$" if curve.scale == curve.characteristic_stress else " MPa"
-    for unloading in measure.unloadings(curve.strain, curve.stress):
-        digits = 1 if unloading.slope < 10 else 0
-        to_the_left = unloading.reversal > 0.7 * curve.strain.max()
-        foot = unloading.end if to_the_left else unloading.reversal
-        _write(axes, f"slope {unloading.slope:.{digits}f}{unit}", (foot, 0.08 * axes.get_ylim()[1]),
-               (-3 if to_the_left else 3, 0), ha="right" if to_the_left else "left",
-               color=BRANCH_COLOURS[measure.UNLOADING])
-
-
-def _write(axes, text, point, offset, coordinates="data", **look):
-    """Small text at `offset` [points] from a point."""
-    axes.annotate(text, point, xycoords=coordinates, xytext=offset, textcoords="offset points",
-                  fontsize=7, **look)
+    words = ", ".join(f"{slope:.{1 if slope < 10 else 0}f}" for slope in slopes)
+    return f", slope{'s' if len(slopes) > 1 else ''} {words}{unit}" if slopes else ""
 
 
 def _draw_overlay(axes, curves):
@@ -146,7 +148,8 @@ def _draw_overlay(axes, curves):
         axes.plot(curve.strain, curve.stress, color=colour, alpha=0.35, lw=0.4)
         eps, sigma = measure.envelope(curve.strain, curve.stress)
         words = f": plateau {_stress_text(curve.plateau.mean, curve)}" if curve.plateau else ""
-        axes.plot(eps, measure.moving_mean(eps, sigma), color=colour, lw=1.2, label=curve.label + words)
+        mean = sigma if curve.elastic_grain else measure.moving_mean(eps, sigma)
+        axes.plot(eps, mean, color=colour, lw=1.2, label=curve.label + words)
 
 
 def _stress_text(stress, curve):
@@ -160,7 +163,5 @@ def _stress_text(stress, curve):
 
 def _draw_characteristic_stress(axes, value, normalise):
     """The line at sigma_I = F0/<a0>, the paper's characteristic stress."""
-    axes.axhline(value, color=GREY, lw=0.8, ls=(0, (1, 1.2)))
     equals = "" if normalise else f" = {value:.2f} MPa"
-    text = rf"characteristic stress $\sigma_I = F_0/\langle a_0\rangle${equals}"
-    _write(axes, text, (0.98, value), (0, 1.5), ("axes fraction", "data"), ha="right", va="bottom")
+    axes.axhline(value, color=GREY, lw=0.8, ls=(0, (1, 1.2)), label=rf"$\sigma_I = F_0/\langle a_0\rangle${equals}")

@@ -1,13 +1,14 @@
-"""Whether a run can be trusted: energies, plate forces, sweeps, residual and overlap over strain."""
+"""Whether a run can be trusted: energies, forces on walls, sweeps, residual and overlap over strain."""
 
 from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, MaxNLocator
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
+from matplotlib.transforms import blended_transform_factory
 
 from .. import NotRecorded
-from .style import BLUE, INK, MM, ORANGE, SINGLE_COLUMN, VERMILLION
+from .style import BLUE, INK, MM, ORANGE, SINGLE_COLUMN, VERMILLION, millimetres
 
 
 class Panel(NamedTuple):
@@ -17,11 +18,11 @@ class Panel(NamedTuple):
 
 
 PANELS = (
-    Panel("energy [J/m]", False, {"wall_work": ("plates' work", INK), "dissipation": ("dissipated", ORANGE),
+    Panel("energy [J/m]", False, {"wall_work": ("walls' work", INK), "dissipation": ("dissipated", ORANGE),
                                   "attraction_energy": ("attraction (change)", BLUE),
                                   "elastic_energy": ("elastic", BLUE)}),
     Panel("kinetic\nenergy [J/m]", True, {"kinetic_energy": ("", VERMILLION)}),
-    Panel("force on\nplate [N/m]", False, {"force_top": ("top", VERMILLION),
+    Panel("force on\nwall [N/m]", False, {"force_top": ("top", VERMILLION),
                                            "force_bottom": ("bottom", BLUE)}),
     Panel("sweeps\nper step", False, {"sweeps": ("", BLUE)}),
     Panel("residual", True, {"residual_max": ("worst", VERMILLION),
@@ -31,7 +32,8 @@ PANELS = (
 )
 FROM_START = {"attraction_energy"}  # energies known up to a constant
 PANEL_HEIGHT, AXIS_HEIGHT = 23, 9  # [mm]
-MOST_DECADES = 8  # of a logarithmic axis
+LEFT, RIGHT, TOP, LABEL = 17, 2.5, 1, 6.5  # margins, and where the words beside the axes stand [mm]
+MOST_DECADES = 4  # of a logarithmic axis
 
 
 def draw_diagnostics(run):
@@ -41,7 +43,8 @@ def draw_diagnostics(run):
     if not panels or "strain" not in series:
         raise NotRecorded(f"{run.path}: series.csv has nothing to draw over strain")
     size = (SINGLE_COLUMN * MM, (PANEL_HEIGHT * len(panels) + AXIS_HEIGHT) * MM)
-    figure = Figure(figsize=size, layout="constrained")
+    figure = Figure(figsize=size)
+    millimetres(figure, LEFT, RIGHT, AXIS_HEIGHT, TOP, hspace=0.12)
     grid = figure.subplots(len(panels), sharex=True, squeeze=False)
     for axes, letter, panel in zip(grid[:, 0], "abcdef", panels):
         _draw_panel(axes, series, panel)
@@ -49,7 +52,6 @@ def draw_diagnostics(run):
                       textcoords="offset points", va="top")
     grid[-1, 0].set_xlabel(r"cumulative axial strain $\varepsilon$")
     grid[-1, 0].set_xlim(0, series["strain"].max() * 1.02 or 0.01)
-    figure.align_ylabels()
     return figure
 
 
@@ -64,10 +66,13 @@ def _draw_panel(axes, series, panel):
         if np.isfinite(values).any():
             axes.plot(series["strain"], values, color=colour, lw=0.5, label=label)
             shown += bool(label)
-    axes.set_ylabel(panel.label)
+    axes.set_ylabel(panel.label, va="center")
+    axes.yaxis.set_label_coords(LABEL * MM, 0.5,
+                                transform=blended_transform_factory(axes.figure.dpi_scale_trans, axes.transAxes))
     if panel.logarithmic:
         axes.set_yscale("log")
         axes.yaxis.set_major_locator(LogLocator(numticks=5))
+        axes.yaxis.set_minor_locator(NullLocator())
         low, high = axes.get_ylim()
         axes.set_ylim(bottom=max(low, high / 10**MOST_DECADES))  # below, rounding errors
     else:

@@ -1,28 +1,31 @@
 """The grain at chosen moments: a column for each moment, a row for each way to look, one scale."""
 
-from .. import NotRecorded
+from .. import NotRecorded, colours
 from .layout import panel_grid
 from .rows import ROWS
-from .scene import draw_plates, extent
+from .scene import draw_walls, extent
 from .stages import choose_stages
 
-PLATE = 0.05  # thickness of a plate over the grain's height at the start
+WALL = 0.05  # thickness of a wall over the grain's height at the start
 
 
 def draw_grain(run, rows=ROWS):
     """Draws the rows that the snapshots have the data for. Raises NotRecorded if the run has no snapshot."""
-    snapshots = [run[i] for i in range(len(run))]
-    if not snapshots:
+    if len(run) == 0:
         raise NotRecorded("no snapshots to draw")
-    stages = choose_stages(run, [s.time for s in snapshots])
+    stages = choose_stages(run, run.times)
+    # scales are those of the run: frames evenly over it, and those that are shown
+    frames = sorted({*colours.sampled(len(run)), *(stage.snapshot for stage in stages)})
+    snapshots = [run[i] for i in frames]
+    places = [frames.index(stage.snapshot) for stage in stages]
     bottom, top = extent(snapshots[0], 0)[2:]
-    plate = PLATE * (top - bottom)
+    wall = WALL * (top - bottom)
     views = [view for view in (_view(row, snapshots) for row in rows) if view]
-    grid = panel_grid([extent(snapshots[stage.snapshot], plate) for stage in stages], len(views))
+    grid = panel_grid([extent(snapshots[place], wall) for place in places], len(views))
     for row, view in enumerate(views):
-        for axes, stage in zip(grid.axes[row], stages):
-            view.draw(axes, stage.snapshot, grid.scale)
-            draw_plates(axes, snapshots[stage.snapshot], plate)
+        for axes, place in zip(grid.axes[row], places):
+            view.draw(axes, place, grid.scale)
+            draw_walls(axes, snapshots[place], wall)
         view.draw_key(grid, row)
         grid.add_row_name(row, view.name)
     for column, stage in enumerate(stages):

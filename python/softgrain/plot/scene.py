@@ -1,63 +1,44 @@
-"""The pieces of a picture of particles: disks, plates and contact forces, drawn into given axes."""
+"""The pieces of `softgrain.picture`, drawn into axes of Matplotlib."""
 
 import numpy as np
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 
-from .style import INK
+from .. import picture
+from .style import INK, POINT
 
-STRONG, WEAK = "#A11D33", "#8FA9BD"
-
-
-def draw_disks(axes, snapshot, colours, rim="none"):
-    """Filled disks; `colours` is one colour or one RGBA row per particle.
-
-    Pixels also in SVG and PDF: as paths, a figure of 30 000 disks takes 20 MB."""
-    position, diameter = snapshot.particles["position"], 2 * snapshot.particles["radius"]
-    look = dict(facecolors=colours, edgecolors=rim, linewidths=0.15, rasterized=True)
-    disks = EllipseCollection(diameter, diameter, np.zeros_like(diameter), units="xy", offsets=position,
-                              offset_transform=axes.transData, **look)
-    axes.add_collection(disks)
+MOST_VECTORS = 3000  # polygons or disks of a panel; more are pixels also in SVG and PDF: 30 000 would take 20 MB
 
 
-def draw_outlines(axes, snapshot, colours):
-    """Grains filled within their outlines; `colours` is one colour or one RGBA row per grain."""
-    grain, position = snapshot.outlines["grain"], snapshot.outlines["position"]
-    polygons = np.split(position, np.flatnonzero(np.diff(grain)) + 1)
-    axes.add_collection(PolyCollection(polygons, facecolors=colours, edgecolors=INK, linewidths=0.3))
+RIM = "#C8C8C8"  # of disks: a pressure of zero may be as white as the paper
 
 
-def grain_means(snapshot, values):
-    """Mean of a field of material points over each grain, weighted by their areas."""
-    grain, area = snapshot.particles["grain"], snapshot.particles["radius"] ** 2
-    return np.bincount(grain, area * values) / np.bincount(grain, area)
+def draw_surface(axes, surface, colours):
+    """Polygons or disks, filled; `colours` is one colour or one row for each. Then the rims over them."""
+    many = dict(rasterized=len(surface.values) > MOST_VECTORS)
+    if len(surface.polygons) == len(surface.rims) > 0:  # whole grains carry their own rims
+        axes.add_collection(PolyCollection(surface.polygons, facecolors=colours, edgecolors=INK, linewidths=0.3))
+        return
+    if surface.polygons:
+        axes.add_collection(PolyCollection(surface.polygons, facecolors=colours, edgecolors="face", linewidths=0.15, **many))
+    else:
+        diameter = 2 * surface.radii
+        axes.add_collection(EllipseCollection(diameter, diameter, np.zeros_like(diameter), units="xy", facecolors=colours,
+                                              edgecolors=RIM, linewidths=0.15, offsets=surface.centres,
+                                              offset_transform=axes.transData, **many))
+    if surface.rims:
+        axes.add_collection(PolyCollection(surface.rims, facecolors="none", edgecolors=INK, linewidths=0.4))
 
 
-MOST_GRAINS_WITH_FIELDS = 60  # beyond, a triangulation takes too long and shows nothing more
+def draw_chains(axes, chains, colour, millimetres_per_metre):
+    """Segments as wide as `chains` says, at the scale of the panel."""
+    if len(chains.widths) == 0:
+        return
+    axes.add_collection(LineCollection(chains.segments, linewidths=chains.widths * millimetres_per_metre / POINT,
+                                       colors=colour, alpha=chains.opacities, capstyle="round",
+                                       rasterized=len(chains.widths) > MOST_VECTORS))
 
 
-def has_cells(snapshot):
-    """Whether the particles are material points in cells of four, with outlines around them."""
-    many = np.ptp(snapshot.outlines["grain"]) >= MOST_GRAINS_WITH_FIELDS if "grain" in snapshot.outlines else True
-    return not many and {"stress", "grain"} <= snapshot.particles.keys()
-
-
-def draw_cells(axes, snapshot, values, scale):
-    """A field of material points: the mean of each cell's four, between the outlines of its grain."""
-    cells = snapshot.particles["position"].reshape(-1, 4, 2).mean(axis=1)
-    means = values.reshape(-1, 4).mean(axis=1)
-    grain = snapshot.particles["grain"].astype(int)[::4]
-    for g in range(grain.max() + 1):
-        outline = snapshot.outlines["position"][snapshot.outlines["grain"] == g]
-        inside = cells[grain == g]
-        nearest = np.argmin(((outline[:, None] - inside[None]) ** 2).sum(axis=2), axis=1)
-        points = np.concatenate([inside, outline])
-        field = np.concatenate([means[grain == g], means[grain == g][nearest]])
-        surface = axes.tripcolor(*points.T, field, shading="gouraud", norm=scale.norm, cmap=scale.cmap, rasterized=True)
-        rim = axes.fill(*outline.T, facecolor="none", edgecolor=INK, lw=0.4)[0]
-        surface.set_clip_path(rim)
-
-
-def draw_plates(axes, snapshot, thickness):
+def draw_walls(axes, snapshot, thickness):
     """A bar along each wall, on the side away from the particles."""
     centre = snapshot.particles["position"].mean(axis=0)
     bars = []
@@ -68,35 +49,12 @@ def draw_plates(axes, snapshot, thickness):
     axes.add_collection(PolyCollection(bars, facecolors=INK, edgecolors="none"))
 
 
-def draw_forces(axes, snapshot, largest, widest):
-    """Contact forces as segments between centres, as wide as they are large: `widest` points at `largest`.
-
-    Forces above the snapshot's mean (the strong network) are dark, drawn over the others."""
-    pair, force = pairs_of_bodies(snapshot)
-    position = snapshot.bodies()
-    strong = force > force.mean() if force.size else np.empty(0, bool)
-    for network, colour in ((~strong, WEAK), (strong, STRONG)):
-        width = widest * np.minimum(force[network] / largest, 1)
-        axes.add_collection(LineCollection(position[pair[network]], linewidths=width, colors=colour,
-                                           capstyle="round"))
-
-
-def pairs_of_bodies(snapshot):
-    """(pair (m, 2), force (m,)) of the contacts between two particles, or grains, that push; empty if not recorded."""
-    if not {"pair", "force"} <= snapshot.contacts.keys():
-        return np.empty((0, 2), int), np.empty(0)
-    pair, force = snapshot.contacts["pair"].astype(int), snapshot.contacts["force"]
-    count = len(snapshot.bodies())
-    inside = (pair >= 0).all(axis=1) & (pair < count).all(axis=1) & (force > 0)
-    return pair[inside], force[inside]
-
-
 def extent(snapshot, margin):
-    """(x0, x1, y0, y1) [m] of the particles, and of a box's walls, with a margin all around."""
+    """(x0, x1, y0, y1) [m] of the bodies, and of a box's walls, with a margin all around."""
     position, radius = snapshot.particles["position"], snapshot.particles["radius"][:, None]
-    low, high = (position - radius).min(axis=0), (position + radius).max(axis=0)
-    if len(snapshot.walls) > 2:  # plates are longer than the grain between them
-        corners = snapshot.walls.reshape(-1, 2)
-        low, high = np.minimum(low, corners.min(axis=0)), np.maximum(high, corners.max(axis=0))
-    low, high = low - margin, high + margin
+    corners = [position - radius, position + radius, *(polygon for _, polygon in picture.outlines(snapshot))]
+    if len(snapshot.walls) > 2:  # walls of a single grain are longer than the grain between them
+        corners.append(snapshot.walls.reshape(-1, 2))
+    corners = np.concatenate(corners)
+    low, high = corners.min(axis=0) - margin, corners.max(axis=0) + margin
     return low[0], high[0], low[1], high[1]

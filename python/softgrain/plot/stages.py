@@ -43,5 +43,5 @@ def _stage(series, snapshot, time):
         known = {"time", column} <= series.keys()
         return float(np.interp(time, series["time"], series[column])) if known else None
 
-    stresses = [stress for stress in map(now, measure.PLATE_STRESSES) if stress is not None]
+    stresses = [stress for stress in map(now, measure.WALL_STRESSES) if stress is not None]
     return Stage(snapshot, now("strain"), float(np.mean(stresses)) if stresses else None)

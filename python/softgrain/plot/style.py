@@ -52,6 +52,12 @@ STYLE = {
 }
 
 
+def millimetres(figure, left, right, bottom, top, **gaps):
+    """Fixed margins. A layout that looks at every word costs more than the drawing itself."""
+    width, height = figure.get_size_inches() / MM
+    figure.subplots_adjust(left / width, bottom / height, 1 - right / width, 1 - top / height, **gaps)
+
+
 @contextmanager
 def style():
     """What is drawn and saved inside has the style of the package; the caller's settings come back after."""

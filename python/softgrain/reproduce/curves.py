@@ -17,7 +17,7 @@ class Compaction:
     strain: np.ndarray
     phi: np.ndarray  # Phi_0, undeformed grains
     phi_deformed: np.ndarray  # true area of the grains
-    stress: np.ndarray  # mean of lid and bottom [Pa]
+    stress: np.ndarray  # mean of the top and the bottom wall [Pa]
     stress_top: np.ndarray
     stress_bottom: np.ndarray
     z: np.ndarray

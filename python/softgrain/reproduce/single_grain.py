@@ -1,4 +1,4 @@
-"""Closed forms for one elastic grain between plates, and what its curve says. Stress sigma = F/L [Pa]."""
+"""Closed forms for one elastic grain between walls, and what its curve says. Stress sigma = F/L [Pa]."""
 
 import numpy as np
 

@@ -129,7 +129,7 @@ def _coordination(results):
         eps, phi = Spread.of([s and s[0] for s in starts]), Spread.of([s and s[1] for s in starts])
         yield Verdict("3", f"{model.upper()}, mu = {friction:g}: jams at eps = 0.08, Phi = 0.75, with Z = 3",
                       f"Z = 3 at eps = {eps.text()}, Phi_0 = {phi.text()}", 0.70 <= phi.mean <= 0.80,
-                      "a pair counts only while it carries force; a lid ten times slower changes nothing (experiments/compaction_mpm)")
+                      "a pair counts only while it carries force; a wall ten times slower changes nothing (experiments/compaction_mpm)")
     for (model, friction), curves in results.packings.items():
         most = Spread.of([c.z.max() for c in curves])
         yield Verdict("3", f"{model.upper()}, mu = {friction:g}: Z reaches 5.5", f"{most.text()}",

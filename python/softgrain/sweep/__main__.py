@@ -1,32 +1,15 @@
 """python3 -m softgrain.sweep CASE: the runs of a sweep, its table and its figure."""
 
-import argparse
 import os
 import shlex
 import sys
-from pathlib import Path
 
 from .. import NotRecorded
+from ..options import parse
 from . import execute, scripts, table
 from .plan import PlanError, read_plan
 
 USAGE_ERROR, RUNS_FAILED, IO_ERROR = 2, 3, 4  # exit codes, those of the program `softgrain`
-
-
-def parse(arguments):
-    parser = argparse.ArgumentParser(prog="softgrain sweep", description="Runs a case with some values varied.")
-    parser.add_argument("case", metavar="CASE", type=Path)
-    parser.add_argument("--vary", metavar="KEY=VALUES", action="append", required=True)
-    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], dest="fixed")
-    parser.add_argument("-o", "--output", metavar="DIR", type=Path, required=True)
-    parser.add_argument("-j", "--jobs", type=int, default=len(os.sched_getaffinity(0)), help="runs at a time")
-    parser.add_argument("--column", action="append", default=[], help="of series.csv: into the table and the figure")
-    what = parser.add_mutually_exclusive_group()
-    what.add_argument("--list", action="store_true", help="number the runs, run nothing")
-    what.add_argument("--index", type=int, help="carry out one run of the list")
-    what.add_argument("--slurm", action="store_true", help="write DIR/array.sh for sbatch, run nothing")
-    what.add_argument("--snakemake", action="store_true", help="write DIR/Snakefile, run nothing")
-    return parser.parse_args(arguments)
 
 
 def list_runs(plan):
@@ -93,10 +76,10 @@ def collect(plan, columns):
 
 
 def main(arguments=None):
-    options = parse(arguments)
+    options = parse("sweep", arguments)
     program = os.environ.get("SOFTGRAIN_PROGRAM", "softgrain")
     try:
-        plan = read_plan(program, options.case, options.fixed, options.vary, options.output)
+        plan = read_plan(program, options.case, options.set, options.vary, options.output)
         if options.list:
             return list_runs(plan)
         if options.index is not None:
@@ -105,7 +88,7 @@ def main(arguments=None):
             return write_script(plan, "array.sh", scripts.slurm_script, options.column)
         if options.snakemake:
             return write_script(plan, "Snakefile", scripts.snakefile, options.column)
-        return sweep(plan, max(1, options.jobs), options.column)
+        return sweep(plan, options.jobs or len(os.sched_getaffinity(0)), options.column)
     except execute.RefusedCase as error:
         print(f"error: {error}", file=sys.stderr)
         return error.code

@@ -4,6 +4,7 @@ import hashlib
 import itertools
 import re
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 
 LONGEST_RANGE = 100_000
@@ -80,20 +81,45 @@ def read_plan(program, case, fixed, varied, folder):
 
 
 def _values(key, text):
-    """"0,0.5" -> two values; "1..5" -> five whole numbers. Commas within brackets part nothing."""
+    """"0,0.5" -> two values; "1..5" -> five whole numbers; "0:0.5:0.1" -> first, last and step, the last included.
+
+    Commas within brackets part nothing."""
     values = []
-    for part in re.split(r",(?![^\[]*\])", text):
-        span = re.fullmatch(r"\s*(-?\d+)\.\.(-?\d+)\s*", part)
-        if span is None:
-            values.append(part.strip())
-            continue
-        first, last = int(span[1]), int(span[2])
-        if not first <= last < first + LONGEST_RANGE:
-            raise PlanError(f"--vary {key}: '{part.strip()}' is not a range of whole numbers FIRST..LAST")
-        values.extend(str(number) for number in range(first, last + 1))
+    for part in (part.strip() for part in re.split(r",(?![^\[]*\])", text)):
+        if re.fullmatch(r"-?\d+\.\.-?\d+", part):
+            first, last = map(int, part.split(".."))
+            if not first <= last < first + LONGEST_RANGE:
+                raise PlanError(f"--vary {key}: '{part}' is not a range of whole numbers FIRST..LAST")
+            values.extend(str(number) for number in range(first, last + 1))
+        elif ".." in part and _NUMBER.match(part):
+            raise PlanError(f"--vary {key}: '{part}': only whole numbers are counted from FIRST..LAST; write {key}=0:0.5:0.1, "
+                            "first, last and step, or the values one by one")
+        elif ":" in part and _NUMBER.match(part):
+            values.extend(_steps(key, part))
+        else:
+            values.append(part)
     if "" in values:
         raise PlanError(f"--vary {key}: an empty value")
     return values
+
+
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+
+
+def _steps(key, part):
+    """"0:0.5:0.1" -> 0, 0.1, ... 0.5; "1:5:2 MPa" -> 1 MPa, 3 MPa, 5 MPa. In decimals, so that 0.3 is 0.3."""
+    *numbers, tail = part.split(":")
+    found = _NUMBER.match(tail.strip())
+    unit = tail.strip()[found.end():].strip() if found else ""
+    try:
+        first, last, step = (Decimal(number.strip()) for number in (*numbers, found[0] if found else ""))
+        count = int((last - first) / step) if step else -1
+    except (ArithmeticError, ValueError):
+        count = -1
+    if not 0 <= count < LONGEST_RANGE:
+        raise PlanError(f"--vary {key}: '{part}' is no FIRST:LAST:STEP, as in 0:0.5:0.1 or 1:5:2 MPa")
+    values = (first + number * step for number in range(count + 1))
+    return [f"{value:f} {unit}".strip() for value in values]
 
 
 def _short(name):

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "softgrain/io/report_chains.hpp"
@@ -22,6 +23,33 @@ Column column_of(const Array& array, std::size_t k = 0) {
       },
       array.values);
   return column;
+}
+
+/// One number for each row: itself, the length of a vector, the largest shear of a plane tensor (xx xy yx
+/// yy). Nothing for other shapes.
+Column scalar_of(const Array& array) {
+  if (array.columns == 1) return column_of(array);
+  Column scalar;
+  if (array.columns == 2) {
+    const Column x = column_of(array, 0), y = column_of(array, 1);
+    for (std::size_t i = 0; i < x.size(); ++i) scalar.push_back(std::hypot(x[i], y[i]));
+  } else if (array.columns == 4) {
+    const Column xx = column_of(array, 0), xy = column_of(array, 1), yy = column_of(array, 3);
+    for (std::size_t i = 0; i < xx.size(); ++i) scalar.push_back(std::hypot((xx[i] - yy[i]) / 2, xy[i]));
+  }
+  return scalar;
+}
+
+/// What a particle is, and not a field that it carries.
+bool is_field(std::string_view name) {
+  return name != "x" && name != "y" && name != "radius" && name != "grain";
+}
+
+void add_fields(ReportFrame& frame, const Scene& scene) {
+  for (const auto& [name, array] : scene.particles)
+    if (name != "position")
+      if (Column values = scalar_of(array); !values.empty())
+        frame.columns["particle." + name] = std::move(values);
 }
 
 void add_positions(ReportFrame& frame, const std::map<std::string, Array>& arrays, const std::string& owner) {
@@ -73,7 +101,7 @@ void add_outlines(ReportFrame& frame, const Scene& scene) {
   }
 }
 
-/// Means over a grain's particles, weighted by their areas: pressure, and the centre where there is no
+/// Means over a grain's particles, weighted by their areas: of each field, and the centre where there is no
 /// outline. Positions count from there.
 void add_grain_means(ReportFrame& frame) {
   auto& columns = frame.columns;
@@ -90,7 +118,7 @@ void add_grain_means(ReportFrame& frame) {
     for (std::size_t g = 0; g < sum.size(); ++g) sum[g] /= std::max(weight[g], 1e-300);
     return Column(sum.begin(), sum.end());
   };
-  if (columns.contains("particle.pressure")) columns["grain.pressure"] = mean("pressure");
+  for (const ReportField& field : fields_of(frame)) columns["grain." + field.name] = mean(field.name);
   for (const std::string axis : {"x", "y"}) {
     const std::string centre_name = "grain." + axis;
     if (!columns.contains(centre_name)) columns[centre_name] = mean(axis);
@@ -130,12 +158,29 @@ void add_contacts(ReportFrame& frame, const Scene& scene) {
 
 }  // namespace
 
+std::vector<ReportField> fields_of(const ReportFrame& frame) {
+  static const std::vector<ReportField> known{{"pressure", "pressure", "Pa"},
+                                              {"coordination", "contacts", ""},
+                                              {"J", "volume over that at rest", ""},
+                                              {"stress", "largest shear stress", "Pa"},
+                                              {"velocity", "speed", "m/s"}};
+  constexpr std::string_view prefix = "particle.";
+  std::vector<ReportField> fields;
+  for (const ReportField& field : known)
+    if (frame.columns.contains(std::string(prefix) + field.name)) fields.push_back(field);
+  for (const auto& [column, values] : frame.columns) {
+    if (!column.starts_with(prefix)) continue;
+    const std::string name = column.substr(prefix.size());
+    const auto same = [&](const ReportField& field) { return field.name == name; };
+    if (is_field(name) && std::none_of(known.begin(), known.end(), same)) fields.push_back({name, name, ""});
+  }
+  return fields;
+}
+
 ReportFrame frame_of(const Scene& scene) {
   ReportFrame frame;
   add_positions(frame, scene.particles, "particle");
-  for (const char* name : {"radius", "pressure", "coordination", "grain"})
-    if (const auto field = scene.particles.find(name); field != scene.particles.end())
-      frame.columns[std::string("particle.") + name] = column_of(field->second);
+  add_fields(frame, scene);
   add_walls(frame, scene);
   add_outlines(frame, scene);
   add_grain_means(frame);

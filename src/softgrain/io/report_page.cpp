@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr std::size_t named_in_title = 2;  ///< runs; the others are counted
 constexpr std::string_view title_mark = "<!--title-->", runs_mark = "<!--runs-->";
 
 std::string escaped(std::string_view text) {
@@ -30,11 +31,14 @@ std::string escaped(std::string_view text) {
   return html;
 }
 
-/// "squeeze" for out/squeeze; the whole path where another run has the same name.
+/// "squeeze" for out/squeeze, "squeeze/case_run" for the directory that everybody's run has by default; the
+/// whole path where another run has the same name.
 std::string name_of(const fs::path& run, const std::vector<fs::path>& runs) {
   const auto last = [](const fs::path& path) {
-    const fs::path whole = fs::absolute(path).lexically_normal();
-    return whole.has_filename() ? whole.filename() : whole.parent_path().filename();
+    fs::path whole = fs::absolute(path).lexically_normal();
+    if (!whole.has_filename()) whole = whole.parent_path();
+    const fs::path name = whole.filename();
+    return name == "case_run" ? whole.parent_path().filename() / name : name;
   };
   const auto alike = [&](const fs::path& other) { return last(other) == last(run); };
   return (std::count_if(runs.begin(), runs.end(), alike) > 1 ? run : last(run)).string();
@@ -63,8 +67,9 @@ std::vector<std::string> write_report(const std::vector<fs::path>& runs, const f
     ReportRun run = encode_run(RunPaths{directory}, name);
     payloads.push_back(std::move(run.payload));
     warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
-    title += (title.empty() ? "" : ", ") + name;
+    if (payloads.size() <= named_in_title) title += (title.empty() ? "" : ", ") + name;
   }
+  if (runs.size() > named_in_title) title += fmt::format(" and {} more", runs.size() - named_in_title);
   write_file(page, report_text(report_template, title, payloads), Survives::kill);
   return warnings;
 }

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/io/case_file.hpp"
+#include "softgrain/io/case_text.hpp"
 #include "softgrain/io/compress.hpp"
 #include "softgrain/io/file.hpp"
 #include "softgrain/io/report_codec.hpp"
@@ -127,11 +129,16 @@ class Frames {
   std::size_t merged_ = 1;  ///< points in one
 };
 
-bool is_index(const std::string& name) {
-  for (const char* index :
-       {"particle.grain", "particle.coordination", "outline.grain", "contact.a", "contact.b"})
-    if (name == index) return true;
-  return false;
+/// Whole numbers from 0 that a float holds exactly.
+bool is_whole(const Column& values) {
+  return std::all_of(values.begin(), values.end(),
+                     [](float v) { return v >= 0 && v < 16777216.0F && v == std::floor(v); });
+}
+
+/// Where something is, and how large; else a field, of which a few levels are seen.
+bool is_geometry(std::string_view name) {
+  return !name.starts_with("particle.") || name == "particle.x" || name == "particle.y" ||
+         name == "particle.radius";
 }
 
 double extent(const Column& values) {
@@ -152,11 +159,11 @@ double picture_size(const ReportFrame& frame) {
 constexpr std::size_t few = 1 << 18;  ///< numbers that cost little
 
 /// How far apart numbers may lie that the page need not tell apart, where there are many: outlines 1/8192 of
-/// the picture, particles 1/4096, their pressures 1/32 of the range; the widths of lines 1/255.
+/// the picture, particles 1/4096, their fields 1/32 of the range; the widths of lines 1/255.
 double resolution(const std::string& name, const Column& values, double picture) {
   if (name == "contact.force") return extent(values) / 255;
   if (values.size() <= few) return 0;
-  if (name == "particle.pressure") return extent(values) / 31;
+  if (!is_geometry(name)) return extent(values) / 31;
   return picture / (name.starts_with("particle.") ? 4096 : 8192);
 }
 
@@ -204,10 +211,10 @@ void add_arrays(const std::vector<ReportFrame>& frames, Json& header, std::strin
   for (const auto& [name, first] : frames.front().columns) {
     auto [values, stride, stored_frames] = gather(frames, name);
     if (values.empty()) continue;
-    if (name == "particle.pressure" && values.size() > few) clip_outliers(values);
-    const EncodedArray array = is_index(name)
-                                   ? encode_indices(values, stride)
-                                   : encode_reals(values, stride, resolution(name, values, picture));
+    const bool whole = is_whole(values);
+    if (!whole && !is_geometry(name) && values.size() > few) clip_outliers(values);
+    const EncodedArray array = whole ? encode_indices(values, stride)
+                                     : encode_reals(values, stride, resolution(name, values, picture));
     arrays.push_back({{"name", name},
                       {"low", array.low},
                       {"step", array.step},
@@ -234,6 +241,22 @@ Json provenance(const RunPaths& paths) {
   }
 }
 
+/// The resolved case as JSON; nothing where there is none that this version reads.
+Json settings_of(const std::string& case_text, const std::string& name) {
+  try {
+    return case_text.empty() ? Json::object() : Json::parse(case_json(parse_case(case_text, name)));
+  } catch (const UsageError&) {
+    return Json::object();
+  }
+}
+
+Json fields_json(const ReportFrame& frame) {
+  Json fields = Json::array();
+  for (const ReportField& field : fields_of(frame))
+    fields.push_back({{"name", field.name}, {"label", field.label}, {"unit", field.unit}});
+  return fields;
+}
+
 std::string little_endian(std::size_t number) {
   std::string bytes;
   for (int k = 0; k < 4; ++k) bytes += static_cast<char>(number >> 8 * k & 255);
@@ -249,6 +272,8 @@ ReportRun encode_run(const RunPaths& paths, const std::string& name, const Repor
   const std::string series = text_or_nothing(paths.series_file());
   const auto rows = static_cast<double>(std::count(series.begin(), series.end(), '\n'));
   header["case"] = text_or_nothing(paths.case_file());
+  header["settings"] = settings_of(header["case"], paths.case_file().string());
+  header["fields"] = fields_json(frames.all().front());
   header["rows_every"] = share(rows, limits.rows);
   header["series"] = thinned_rows(series, header["rows_every"]);
   header["snapshots_every"] = frames.every();

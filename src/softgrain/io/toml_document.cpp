@@ -1,5 +1,9 @@
 #include "softgrain/io/toml_document.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
 #include <stdexcept>
 
 // The one door to toml++. Version 3.3.0 reaches undefined behaviour on some keys that are not ASCII and an
@@ -81,6 +85,42 @@ std::string plain_words(std::string_view description) {
   return (twice ? "given twice: " : "") + std::string(description);
 }
 
+std::string_view stripped(std::string_view text) {
+  const auto begin = text.find_first_not_of(" \t\r"), end = text.find_last_not_of(" \t\r");
+  return begin == std::string_view::npos ? "" : text.substr(begin, end - begin + 1);
+}
+
+/// Line `number`, from 1, or the last one before it that is not empty: an error may stand behind its cause.
+std::string_view line_of(std::string_view text, int number) {
+  std::string_view found;
+  for (int k = 1; k <= number && !text.empty(); ++k) {
+    const std::string_view line = stripped(text.substr(0, text.find('\n')));
+    if (!line.empty()) found = line;
+    text.remove_prefix(
+        std::min(text.size(), text.find('\n') == text.npos ? text.size() : text.find('\n') + 1));
+  }
+  return found;
+}
+
+/// What people write who do not know TOML, and how it is written; nothing where the parser's words will do.
+std::string advice(std::string_view line) {
+  line = stripped(line.substr(0, line.find('#')));
+  if (line.empty() || line.front() == '[') return "";
+  const auto equals = line.find('=');
+  if (equals == std::string_view::npos) return fmt::format("expected 'key = value', got '{}'", line);
+  const std::string_view key = stripped(line.substr(0, equals)), value = stripped(line.substr(equals + 1));
+  if (value.empty()) return fmt::format("a value is missing behind '{} ='", key);
+  for (const std::string_view curly : {"\u201c", "\u201d", "\u201e", "\u2018", "\u2019", "\u00ab"})
+    if (value.find(curly) != std::string_view::npos)
+      return "these quotation marks are not those of a keyboard; write \"...\"";
+  const bool plain = value.find_first_of("\"'[{") == std::string_view::npos;
+  const bool has_letters =
+      std::any_of(value.begin(), value.end(), [](unsigned char c) { return std::isalpha(c); });
+  if (plain && has_letters)
+    return fmt::format("words and quantities stand in quotation marks: {} = \"{}\"", key, value);
+  return "";
+}
+
 TomlValue::Table convert(const toml::table& table);
 
 TomlValue convert(const toml::node& node) {
@@ -122,7 +162,10 @@ TomlValue::Table parse_toml(std::string_view text) {
   try {
     return convert(toml::parse(text));
   } catch (const toml::parse_error& error) {
-    throw TomlError(position(error.source()), plain_words(error.description()));
+    const TextPosition at = position(error.source());
+    const std::string words = plain_words(error.description());
+    const std::string better = words.starts_with("given twice") ? "" : advice(line_of(text, at.line));
+    throw TomlError(at, better.empty() ? words : better);
   } catch (const std::logic_error&) {
     throw TomlError({}, "cannot be read as TOML");
   }

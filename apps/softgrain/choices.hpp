@@ -1,0 +1,20 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace CLI {
+class Option;
+}
+
+namespace softgrain {
+
+/// The option takes one of these words, which shells offer when they complete its value.
+CLI::Option* take_one_of(CLI::Option* option, const std::vector<std::string>& words);
+
+/// Shells offer these words; what else is given is for the verb to judge.
+CLI::Option* offer(CLI::Option* option, const std::vector<std::string>& words);
+
+/// The words that an option takes; none if it takes anything.
+std::vector<std::string> choices_of(const CLI::Option* option);
+
+}  // namespace softgrain

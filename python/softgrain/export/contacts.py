@@ -1,0 +1,61 @@
+"""Contacts as a table: who pushes whom, where, in which direction and how hard."""
+
+import numpy as np
+
+from ..run import NotRecorded, Snapshot
+
+UNITS = {"x": "m", "y": "m", "normal_force": "N/m", "tangential_force": "N/m"}
+
+
+def contact_table(snapshot: Snapshot) -> dict[str, np.ndarray]:
+    """Columns, one row for each contact that pushes:
+
+    a, b               the two particles of bonded grains, or the two elastic grains; b is -1 for a wall
+    wall               0 bottom, 1 top, 2 left, 3 right; -1 for none
+    grain_a, grain_b   their grains; grain_b is -1 for a wall
+    normal_x, normal_y unit vector from a to b
+    x, y               where they touch [m]
+    normal_force       [N/m], positive
+    tangential_force   [N/m], of a on b along e_z x normal; left out where it was not recorded
+
+    Raises NotRecorded where the snapshot has no contacts."""
+    contacts = snapshot.contacts
+    if not {"pair", "force"} <= contacts.keys():
+        raise NotRecorded(f"the snapshot of step {snapshot.step} has no contacts")
+    a, b = contacts["pair"].astype(int).T
+    count = len(snapshot.bodies())
+    wall = np.where(b < count, -1, b - count)
+    b = np.where(wall < 0, b, -1)
+    owner = np.arange(count) if snapshot.contacts_of_grains else snapshot.particles.get("grain", np.zeros(count, int))
+    normal, place = _geometry(snapshot, a, b, wall)
+    table = dict(a=a, b=b, wall=wall, grain_a=owner[a].astype(int), grain_b=np.where(wall < 0, owner[b], -1).astype(int),
+                 normal_x=normal[:, 0], normal_y=normal[:, 1], x=place[:, 0], y=place[:, 1], normal_force=contacts["force"])
+    if "total_force" in contacts:
+        table["tangential_force"] = (contacts["total_force"] * np.column_stack([-normal[:, 1], normal[:, 0]])).sum(axis=1)
+    elif "tangential_force" in contacts:
+        table["tangential_force"] = contacts["tangential_force"]
+    return table
+
+
+def write_contacts(snapshot, file):
+    """One line for each contact; the header names columns and units as in series.csv."""
+    table = contact_table(snapshot)
+    file.write(",".join(name + (f"[{UNITS[name]}]" if name in UNITS else "") for name in table) + "\n")
+    columns = [[f"{value:.9g}" for value in values.tolist()] for values in table.values()]
+    file.writelines(",".join(row) + "\n" for row in zip(*columns))
+
+
+def _geometry(snapshot, a, b, wall):
+    """Unit normals from a to b, and places; of disks they follow from the centres."""
+    contacts = snapshot.contacts
+    if snapshot.contacts_of_grains:
+        return contacts["normal"], contacts["position"]
+    position, radius = snapshot.particles["position"], snapshot.particles["radius"]
+    normal = position[b] - position[a]
+    for w in np.unique(wall[wall >= 0]):
+        start, end = snapshot.walls[w].reshape(2, 2)
+        across = np.array([start[1] - end[1], end[0] - start[0]])
+        of_wall = wall == w
+        normal[of_wall] = across * np.sign((start - position[a[of_wall]]) @ across)[:, None]
+    normal /= np.hypot(*normal.T)[:, None]
+    return normal, position[a] + radius[a, None] * normal

@@ -1,0 +1,105 @@
+"""A frame as SVG: grains coloured by pressure, force chains, walls, and a legend; scales are those of the whole run."""
+
+from typing import NamedTuple
+
+from .. import colours, picture
+from ..run import NotRecorded
+
+WIDTH = 1000  # of the picture [px]
+MARGIN = 0.03  # of its width
+LEGEND = 60  # height of what stands below [px]
+TEXT = 'font-family="sans-serif" font-size="18"'
+
+
+class Scale(NamedTuple):
+    """What all frames of a run share."""
+
+    box: tuple  # ((x0, x1), (y0, y1)) [m]
+    colour: colours.Range | None  # of pressure [Pa]
+    force: picture.ForceScale | None
+
+
+def scale_of(snapshots: list) -> Scale:
+    """From frames evenly over the run."""
+    try:
+        surfaces = [picture.surface(s, picture.pressure(s)).values for s in snapshots if picture.has_forces(s)]
+        colour = colours.range_of([value for values in surfaces for value in values]) if surfaces else None
+    except NotRecorded:
+        colour = None
+    try:
+        force = picture.force_scale(snapshots)
+    except NotRecorded:
+        force = None
+    return Scale(picture.box(snapshots), colour, force)
+
+
+def write_svg(snapshot, scale, file):
+    """One frame; positions are at one scale and one place in all frames."""
+    (x0, x1), (y0, y1) = scale.box
+    pixels = WIDTH * (1 - 2 * MARGIN) / (x1 - x0)
+    height = pixels * (y1 - y0) + 2 * MARGIN * WIDTH
+
+    def place(points):
+        """Pixels from the top left corner."""
+        return MARGIN * WIDTH + pixels * ((points - (x0, y1)) * (1, -1))
+
+    file.write(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height + LEGEND:.1f}">\n'
+               f"<title>step {snapshot.step}, time {snapshot.time:.6g} s</title>\n")
+    file.writelines(_surface(snapshot, scale, place, pixels))
+    if scale.force and not (picture.is_elastic(snapshot) and len(snapshot.body_radii()) < 2):
+        colour = scale.colour.chains if scale.colour else colours.CHAINS
+        file.writelines(_chains(picture.chains(snapshot, scale.force), colour, place, pixels))
+    for wall in snapshot.walls:
+        file.write(_line(place(wall.reshape(2, 2)), 'stroke-width="3"'))
+    if scale.colour:
+        file.writelines(_legend(scale.colour, MARGIN * WIDTH, height))
+    file.write("</svg>\n")
+
+
+def _surface(snapshot, scale, place, pixels):
+    try:
+        shapes = picture.surface(snapshot, picture.pressure(snapshot))
+    except NotRecorded:
+        shapes = picture.bodies(snapshot)
+    known = scale.colour and picture.has_forces(snapshot)
+    fills = scale.colour.hexadecimal(shapes.values) if known else [colours.PALE] * len(shapes.values)
+    whole = len(shapes.polygons) == len(shapes.rims)
+    for polygon, fill in zip(shapes.polygons, fills):
+        stroke = colours.INK if whole else fill  # between cells no ground shines through
+        yield _polygon(place(polygon), fill, stroke)
+    if not shapes.polygons:
+        for (x, y), radius, fill in zip(place(shapes.centres), pixels * shapes.radii, fills):
+            yield f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{radius:.2f}" fill="{fill}" stroke="#c8c8c8" stroke-width="0.5"/>\n'
+    if not whole:
+        for rim in shapes.rims:
+            yield _polygon(place(rim), "none", colours.INK)
+
+
+def _polygon(points, fill, stroke):
+    corners = " ".join(f"{x:.2f},{y:.2f}" for x, y in points)
+    return f'<polygon points="{corners}" fill="{fill}" stroke="{stroke}" stroke-width="0.7"/>\n'
+
+
+def _chains(chains, colour, place, pixels):
+    yield f'<g class="chains" stroke="{colour}" stroke-linecap="round">\n'
+    for segment, width, opacity in zip(chains.segments, pixels * chains.widths, chains.opacities):
+        yield _line(place(segment), f'stroke-width="{width:.2f}" stroke-opacity="{opacity:.2f}"', stroke=None)
+    yield "</g>\n"
+
+
+def _line(ends, look, stroke=colours.INK):
+    (ax, ay), (bx, by) = ends
+    paint = f'stroke="{stroke}" ' if stroke else ""
+    return f'<line x1="{ax:.2f}" y1="{ay:.2f}" x2="{bx:.2f}" y2="{by:.2f}" {paint}{look}/>\n'
+
+
+def _legend(colour, left, top):
+    """A bar with its ends in words."""
+    stops = [colour.low + k / 16 * (colour.high - colour.low) for k in range(17)]
+    for k, fill in enumerate(colour.hexadecimal(stops)):
+        yield f'<rect x="{left + 20 * k:.1f}" y="{top:.1f}" width="20.5" height="14" fill="{fill}"/>\n'
+    reach = max(-colour.low, colour.high)
+    factor, unit = next(((f, u) for f, u in ((1e6, "MPa"), (1e3, "kPa")) if reach >= f), (1, "Pa"))
+    for value, x, anchor in ((colour.low, left, "start"), (colour.high, left + 340, "end")):
+        yield f'<text x="{x:.1f}" y="{top + 36:.1f}" text-anchor="{anchor}" {TEXT}>{value / factor:.3g}</text>\n'
+    yield f'<text x="{left + 360:.1f}" y="{top + 14:.1f}" {TEXT}>pressure [{unit}]</text>\n'
