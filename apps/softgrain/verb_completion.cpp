@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "softgrain/io/case_forms.hpp"
 #include "softgrain/io/schema.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
@@ -35,6 +36,15 @@ std::vector<VerbWords> words_of(const CLI::App& app) {
     verbs.push_back(std::move(words));
   }
   return verbs;
+}
+
+/// The keys that --set takes: those of the schema, and other spellings.
+std::vector<std::string> names_for_set() {
+  std::vector<std::string> names = key_names();
+  for (const FormKey& form : form_keys())
+    if (form.name == "sample.file" || (form.takes == Takes::as_key && !form.name.starts_with("pair.")))
+      names.push_back(form.name);
+  return names;
 }
 
 std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); }
@@ -80,7 +90,7 @@ _softgrain() {{
 }}
 complete -o default -F _softgrain softgrain
 )",
-      fmt::arg("names", names), fmt::arg("keys", joined(key_names())), fmt::arg("cases", cases));
+      fmt::arg("names", names), fmt::arg("keys", joined(names_for_set())), fmt::arg("cases", cases));
 }
 
 std::string zsh_completion(const std::vector<VerbWords>& verbs) {
@@ -115,7 +125,7 @@ _softgrain() {{
 }}
 compdef _softgrain softgrain
 )",
-      fmt::arg("names", names), fmt::arg("keys", joined(key_names())), fmt::arg("cases", cases));
+      fmt::arg("names", names), fmt::arg("keys", joined(names_for_set())), fmt::arg("cases", cases));
 }
 
 std::string fish_completion(const std::vector<VerbWords>& verbs) {
@@ -123,7 +133,7 @@ std::string fish_completion(const std::vector<VerbWords>& verbs) {
       "# fish completion of softgrain: save as ~/.config/fish/completions/softgrain.fish\n"
       "complete -c softgrain -n __fish_use_subcommand -f -l help\n";
   std::vector<std::string> keys;
-  for (const std::string& name : key_names()) keys.push_back(name + "=");
+  for (const std::string& name : names_for_set()) keys.push_back(name + "=");
   for (const VerbWords& verb : verbs) {
     text += fmt::format("complete -c softgrain -n __fish_use_subcommand -f -a {} -d {}\n", verb.name,
                         quoted(verb.text, "\\'"));

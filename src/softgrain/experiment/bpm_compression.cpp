@@ -26,7 +26,7 @@ RigidParticles<2> grain_between_plates(const Case& c, const Aggregate& aggregate
 
 FrictionRule friction_rule(const Case& c) {
   const int primaries = c.bpm.primaries;
-  const double inner = c.contact.friction, wall = c.contact.wall_friction;
+  const double inner = c.bpm.inner_friction, wall = c.contact.wall_friction;
   return [=](int, int b) { return b < primaries ? inner : wall; };
 }
 

@@ -105,12 +105,12 @@ double longest_time_step(const Case& c) {
 }
 
 void check_time_step(const Case& c) {
-  if (c.mpm.time_step == 0 || c.experiment.model != GrainModel::mpm) return;
+  if (c.time.step == 0 || c.experiment.model != GrainModel::mpm) return;
   const double longest = longest_time_step(c);
-  require(c.mpm.time_step <= longest,
-          "mpm.time_step {:.4g} us is beyond the longest stable step of an explicit run of this case, "
-          "{:.4g} us; give at most that, or 0 for the default",
-          1e6 * c.mpm.time_step, 1e6 * longest);
+  require(c.time.step <= longest,
+          "time.step {:.4g} us is beyond the longest stable step of an explicit run of this case, "
+          "{:.4g} us; give at most that, or \"auto\"",
+          1e6 * c.time.step, 1e6 * longest);
 }
 
 std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
@@ -124,7 +124,7 @@ std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
   const double height = setup.walls[top_wall].point[1] - setup.walls[bottom_wall].point[1];
   if (c.mpm.integrator == Integrator::backward_euler) {
     // the lid goes down by 1 % of the smallest radius, at most, in a step
-    const double dt = c.mpm.time_step > 0 ? c.mpm.time_step : 0.01 * smallest / c.loading.wall_velocity;
+    const double dt = c.time.step > 0 ? c.time.step : 0.01 * smallest / c.loading.wall_velocity;
     ImplicitOptions options{.tolerance = tolerance_of(c, grains, height),
                             .friction = c.contact.friction,
                             .wall_friction = c.contact.wall_friction,
@@ -134,7 +134,7 @@ std::unique_ptr<Simulation> create_mpm_simulation(const Case& c) {
     return std::make_unique<MpmSimulation<ImplicitDynamics>>(
         ImplicitDynamics(std::move(grains), std::move(setup.walls), options), std::move(drive), dt);
   }
-  const double dt = c.mpm.time_step > 0 ? c.mpm.time_step : stable_time_step(grains);
+  const double dt = c.time.step > 0 ? c.time.step : stable_time_step(grains);
   ExplicitOptions options{.damping_share = damping_share,
                           .friction = c.contact.friction,
                           .wall_friction = c.contact.wall_friction,

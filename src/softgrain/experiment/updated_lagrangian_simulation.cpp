@@ -44,7 +44,7 @@ UpdatedLagrangianDynamics dynamics_of(const Case& c) {
 }
 
 double time_step_of(const Case& c, const UpdatedLagrangianDynamics& dynamics) {
-  if (c.mpm.time_step > 0) return c.mpm.time_step;
+  if (c.time.step > 0) return c.time.step;
   return stable_time_step(dynamics.law, dynamics.density, dynamics.options.cell);
 }
 

@@ -142,7 +142,7 @@ TEST_CASE("the plates start at the grain's lowest and highest point, and the top
 
 TEST_CASE("the grain weighs rho pi R^2 and friction differs inside and at the walls") {
   Case c = small_case();
-  c.contact.friction = 0.2;
+  c.bpm.inner_friction = 0.2;
   c.contact.wall_friction = 0.5;
   const BpmCompression simulation(c);
   const auto& particles = simulation.dynamics().particles;

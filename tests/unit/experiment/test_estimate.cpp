@@ -25,7 +25,7 @@ TEST_CASE("the estimate counts the steps of every path") {
   c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::mpm};
   c.sample.smallest_diameter = c.sample.largest_diameter = 2e-3;
   c.sample.packing_fraction = 0.5;
-  c.mpm.time_step = 1e-6;
+  c.time.step = 1e-6;
   const double side = std::sqrt(c.sample.grains * 3.14159265 * 1e-6 / 0.5);
   const auto compaction = static_cast<double>(CompactionPath(c.loading, side, 1e-6, 0.5).steps());
   CHECK(estimate(c).steps == doctest::Approx(compaction).epsilon(1e-3));
@@ -47,7 +47,7 @@ TEST_CASE("half the time step doubles the steps and the hours") {
 TEST_CASE("a batch of eight grains costs what one grain costs") {
   Case c;
   c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::mpm};
-  c.mpm.time_step = 1e-6;
+  c.time.step = 1e-6;
   c.sample.grains = 1;
   const Estimate one = estimate(c);
   c.sample.grains = 8;
@@ -72,9 +72,9 @@ TEST_CASE("the hours are within a factor of two of what the paper's runs took") 
   c.experiment.model = GrainModel::mpm;
   c.loading.max_packing_fraction = 0.985;
   c.mpm.cells = 16;
-  c.mpm.time_step = 5e-6;
+  c.time.step = 5e-6;
   CHECK(std::abs(std::log2(3600 * estimate(c).hours / 116)) < 1);
-  c.mpm.time_step = 0;
+  c.time.step = 0;
   c.mpm.integrator = Integrator::symplectic_euler;
   CHECK(std::abs(std::log2(3600 * estimate(c).hours / 189)) < 1);
 }
