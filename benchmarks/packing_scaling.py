@@ -21,7 +21,7 @@ GRAINS = (30, 100, 300, 1000, 3000)
 COMMON = {"experiment.loading": "compaction", "loading.wall_velocity": "5 m/s"}
 MODELS = {  # settings, the key of the resolution with its values, particles of a grain by it, steps
     "bpm": ({"experiment.model": "bpm", "time.step": "0.1 us", "bpm.library": 4}, "bpm.primaries", (100, 200, 400), lambda n: n, 100),
-    "mpm implicit": ({"experiment.model": "mpm", "mpm.time_step": "5 us"}, "mpm.cells", (8, 16, 32), lambda n: 14 * n * n, 10),
+    "mpm implicit": ({"experiment.model": "mpm", "time.step": "5 us"}, "mpm.cells", (8, 16, 32), lambda n: 14 * n * n, 10),
     "mpm explicit": ({"experiment.model": "mpm", "mpm.integrator": "explicit"}, "mpm.cells", (8, 16, 32), lambda n: 14 * n * n, 100),
 }
 

@@ -30,7 +30,7 @@ const std::array<BenchCase, 3> bench_cases{
        "loading.max_stress=2 MPa"},
       0.14},
      {"elastic grains (MPM), implicit, 12 of 896 points",
-      {"experiment.model=mpm", "mpm.cells=8", "mpm.time_step=5 us", "loading.max_packing_fraction=0.98"},
+      {"experiment.model=mpm", "mpm.cells=8", "time.step=5 us", "loading.max_packing_fraction=0.98"},
       0.14},
      {"elastic grains (MPM), explicit, 12 of 896 points",
       {"experiment.model=mpm", "mpm.cells=8", "mpm.integrator=explicit", "loading.max_packing_fraction=0.98"},

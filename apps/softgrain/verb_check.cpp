@@ -20,7 +20,9 @@
 namespace softgrain {
 
 std::vector<std::string> notes_of(const CaseReading& reading) {
-  std::vector<std::string> notes = notes_on_effect(reading.the_case, reading.without_effect);
+  std::vector<std::string> notes = reading.notes;
+  for (std::string& note : notes_on_effect(reading.the_case, reading.without_effect))
+    notes.push_back(std::move(note));
   if (reading.the_case.experiment.model != GrainModel::mpm) return notes;
   const std::string_view caution = law_choice(reading.the_case.mpm.law).caution;
   if (!caution.empty()) notes.push_back(fmt::format("note: mpm.law: {}", caution));
@@ -114,7 +116,7 @@ void add_check_verb(CLI::App& app) {
   verb->footer(
       "Examples:\n"
       "  softgrain check squeeze/case.toml\n"
-      "  softgrain check squeeze/case.toml --set contact.friction=0.3 --set time.step=\"0.2 us\" > "
+      "  softgrain check squeeze/case.toml --set contact.wall_friction=0.3 --set time.step=\"0.2 us\" > "
       "resolved.toml");
   verb->callback([options] { check(*options); });
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "choices.hpp"
+#include "softgrain/io/case_forms.hpp"
 #include "softgrain/io/schema.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
@@ -87,11 +88,22 @@ std::vector<VerbWords> words_of(const CLI::App& app) {
   return verbs;
 }
 
+/// The keys that --set takes: those of the schema, and other spellings.
+std::vector<std::string> names_for_set() {
+  std::vector<std::string> names = key_names();
+  for (const FormKey& form : form_keys())
+    if (form.name == "sample.file" || (form.takes == Takes::as_key && !form.name.starts_with("pair.")))
+      names.push_back(form.name);
+  return names;
+}
+
 std::vector<KeyWords> words_of_keys() {
   std::vector<KeyWords> keys;
   for (const Key& key : case_keys()) {
-    const bool truth = std::holds_alternative<MemberOf<bool>>(key.member);
-    keys.push_back({key.name, truth ? Words{"true", "false"} : key.allowed.words});
+    Words choices;
+    if (const auto* member = std::get_if<WordMember>(&key.member)) choices = member->words();
+    if (std::holds_alternative<MemberOf<bool>>(key.member)) choices = {"true", "false"};
+    keys.push_back({key.name, choices});
   }
   return keys;
 }
@@ -183,7 +195,7 @@ _softgrain() {{
 }}
 complete -o default -F _softgrain softgrain
 )",
-      fmt::arg("names", joined(names)), fmt::arg("keys", joined(key_names())),
+      fmt::arg("names", joined(names)), fmt::arg("keys", joined(names_for_set())),
       fmt::arg("key_cases", cases_of_keys("values=\"{}\"")),
       fmt::arg("value_cases", cases_of_values(verbs, "values=\"{}\"")),
       fmt::arg("cases", cases_of_verbs(verbs, "options=\"{}\" places=\"{}\"")));
@@ -231,7 +243,7 @@ _softgrain() {{
 }}
 compdef _softgrain softgrain
 )",
-      fmt::arg("names", names), fmt::arg("keys", joined(key_names())),
+      fmt::arg("names", names), fmt::arg("keys", joined(names_for_set())),
       fmt::arg("key_cases", cases_of_keys("values=({})")),
       fmt::arg("value_cases", cases_of_values(verbs, "values=({})")),
       fmt::arg("cases", cases_of_verbs(verbs, "options=({}) places=({})")));
@@ -242,8 +254,8 @@ std::string fish_completion(const std::vector<VerbWords>& verbs) {
       "# fish completion of softgrain: save as ~/.config/fish/completions/softgrain.fish\n"
       "complete -c softgrain -n __fish_use_subcommand -f -l help\n";
   Words keys;
+  for (const std::string& name : names_for_set()) keys.push_back(name + "=");
   for (const KeyWords& key : words_of_keys()) {
-    keys.push_back(key.name + "=");
     for (const std::string& choice : key.choices) keys.push_back(fmt::format("{}={}", key.name, choice));
   }
   for (const VerbWords& verb : verbs) {

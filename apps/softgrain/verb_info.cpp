@@ -51,8 +51,11 @@ std::string summary(const Case& c) {
                                 : fmt::format("{} primaries", c.bpm.primaries);
   const std::string grains =
       c.experiment.loading == LoadingPath::diametral ? "" : fmt::format("{} grains of ", c.sample.grains);
+  const bool one_bonded =
+      c.experiment.model == GrainModel::bpm && c.experiment.loading == LoadingPath::diametral;
+  const double friction = one_bonded ? c.bpm.inner_friction : c.contact.friction;
   return fmt::format("{} of {}, {}{}, friction {}, seed {}", word_of(c.experiment.loading),
-                     word_of(c.experiment.model), grains, grain, c.contact.friction, c.sample.seed);
+                     word_of(c.experiment.model), grains, grain, friction, c.sample.seed);
 }
 
 /// "strain 0.1  wall_height 9 mm ...", a few to a line.

@@ -8,6 +8,7 @@
 
 #include "choices.hpp"
 #include "softgrain/core/error.hpp"
+#include "softgrain/io/case_schema.hpp"
 #include "softgrain/io/case_text.hpp"
 #include "softgrain/io/file.hpp"
 #include "softgrain/io/suggest.hpp"
@@ -19,6 +20,7 @@ namespace {
 struct NewOptions {
   std::string directory;
   std::string template_name;
+  bool all = false;
 };
 
 const CaseTemplate& find_template(const std::string& name) {
@@ -39,7 +41,8 @@ void write_new_case(const NewOptions& options) {
   std::filesystem::create_directories(options.directory, failed);
   if (failed)
     throw IoError(fmt::format("cannot make the directory {}: {}", options.directory, failed.message()));
-  write_file(path, commented_case_text(start.content));
+  write_file(path, commented_case_text(start.content, options.all ? Keys::all : Keys::that_act));
+  write_file(path.parent_path() / "case.schema.json", case_json_schema());
   fmt::print("{}\n", path.string());
 }
 
@@ -55,12 +58,14 @@ std::string list_of_templates() {
 void add_new_verb(CLI::App& app) {
   auto options = std::make_shared<NewOptions>();
   options->template_name = case_templates().front().name;
-  CLI::App* verb = app.add_subcommand("new", "Write NAME/case.toml, commented, ready to run");
+  CLI::App* verb =
+      app.add_subcommand("new", "Write NAME/case.toml, commented, ready to run, and its schema for editors");
   verb->add_option("NAME", options->directory, "directory to make")->required();
   std::vector<std::string> names;
   for (const CaseTemplate& start : case_templates()) names.push_back(start.name);
   offer(verb->add_option("--template", options->template_name, "what to start from")->capture_default_str(),
         names);
+  verb->add_flag("--all", options->all, "also the keys that do nothing in this case");
   verb->footer(list_of_templates() + "\nExample:\n  softgrain new squeeze --template diametral-bpm");
   verb->callback([options] { write_new_case(*options); });
 }

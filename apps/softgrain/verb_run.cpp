@@ -173,7 +173,7 @@ void resume_run(const RunOptions& options) {
   const RunDirectory directory(paths.root, RunDirectory::IfNotEmpty::keep);
   request.the_case = read_case(paths.case_file().string());
   request.case_text = read_file(paths.case_file());
-  carry_out(request, directory, options, notes_of({request.the_case, {}}));
+  carry_out(request, directory, options, notes_of({request.the_case, {}, {}}));
 }
 
 }  // namespace
@@ -194,7 +194,7 @@ void add_run_verb(CLI::App& app) {
   run->footer(
       "Examples:\n"
       "  softgrain run squeeze/case.toml                    into squeeze/case_run\n"
-      "  softgrain run case.toml --set contact.friction=0.3 -o friction -j 4\n"
+      "  softgrain run case.toml --set contact.wall_friction=0.3 -o friction -j 4\n"
       "  softgrain run case.toml -o out --resume --set loading.max_strain=0.5      a finished run goes "
       "further\n"
       "  softgrain run case.toml -o out --resume --stop-after \"23 h\"    in a queue: exit code 75 asks to "

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "softgrain/io/case_text.hpp"
+#include "softgrain/io/case_schema.hpp"
 #include "softgrain/io/reference_pages.hpp"
 #include "verbs.hpp"
 

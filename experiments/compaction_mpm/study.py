@@ -38,7 +38,7 @@ def name_of(integrator, cells, friction, poisson, step):
 
 def run_case(program, out, integrator, cells, friction, poisson, step):
     settings = {"mpm.integrator": f'"{integrator}"', "mpm.cells": cells, "contact.friction": friction,
-                "mpm.poisson_ratio": poisson, "mpm.time_step": f'"{step} us"'}
+                "mpm.poisson_ratio": poisson, "time.step": f'"{step} us"'}
     return packing_series.run(program, HERE / "case.toml", out / name_of(integrator, cells, friction, poisson, step), settings)
 
 
@@ -94,7 +94,7 @@ def variant(grains=20, cells=8, friction=0, velocity=5, step=5, tolerance=1e-4, 
     """Its labels, its settings and the number of seeds, as packing_series wants them."""
     settings = {"sample.grains": grains, "mpm.cells": cells, "contact.friction": friction, "mpm.tolerance": tolerance,
                 "mpm.poisson_ratio": poisson, "loading.max_strain": last, "loading.wall_velocity": f'"{velocity} m/s"',
-                "mpm.time_step": f'"{step} us"'}
+                "time.step": f'"{step} us"'}
     labels = {"grains": grains, "cells": cells, "mu": friction, "velocity": velocity, "step_us": step, "tolerance": tolerance,
               "nu": poisson}
     return labels, settings, 1 if grains > 20 else None

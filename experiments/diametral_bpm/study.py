@@ -130,7 +130,7 @@ def sensitivity(program, out):
     cases += [("density 7800 kg/m3", {"grain.density": '"7800 kg/m^3"'})]
     cases += [(f"speed {v} m/s", {"loading.wall_velocity": f'"{v} m/s"'}) for v in (0.1, 1)]
     cases += [(f"push-out {v}", {"contact.push_out": v}) for v in (0, 0.2)]
-    cases += [("wall friction 0.5", {"contact.wall_friction": 0.5}), ("inner friction 0.3", {"contact.friction": 0.3})]
+    cases += [("wall friction 0.5", {"contact.wall_friction": 0.5}), ("inner friction 0.3", {"bpm.inner_friction": 0.3})]
     records = []
     for name, settings in cases:
         for seed in (1, 2):

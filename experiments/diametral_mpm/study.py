@@ -76,7 +76,7 @@ def small(program, out):
     for cells in (8, 16, 32, 64):
         rows, info = run(program, out / f"small_{cells}", {
             "mpm.cells": cells, "loading.wall_velocity": '"0.02 m/s"', "loading.max_strain": 0.062,
-            "mpm.time_step": '"100 us"'})
+            "time.step": '"100 us"'})
         points = curve(rows)
         for approach in (0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05):
             near = [percent(y, johnson(x)) for x, y in points if abs(x / approach - 1) < 0.1]
@@ -138,7 +138,7 @@ def step(program, out):
     base = None
     records = []
     for factor in (1, 4, 16):
-        rows, info = run(program, out / f"step_{factor}", {"mpm.time_step": f'"{15.625 * factor} us"'})
+        rows, info = run(program, out / f"step_{factor}", {"time.step": f'"{15.625 * factor} us"'})
         points = curve(rows)
         base = base or points
         compared = [(x, percent(y, at(base, x))) for x, y in points if 0.02 <= x <= 0.345]

@@ -59,7 +59,7 @@ def force(program, out):
     cases = [("total_lagrangian", "fitted", "outline", {})]
     cases += [("updated_lagrangian", shape, contact, {
         "mpm.formulation": '"updated_lagrangian"', "mpm.shape_functions": f'"{shape}"', "mpm.contact_on": f'"{contact}"',
-        "mpm.time_step": '"0 us"'}) for shape, contact in UPDATED]
+        "time.step": '"0 us"'}) for shape, contact in UPDATED]
     records = []
     for formulation, shape, contact, settings in cases:
         rows, info = run(program, out / f"{formulation}_{shape}_{contact}", settings)

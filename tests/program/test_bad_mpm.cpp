@@ -58,17 +58,17 @@ TEST_CASE("an explicit step beyond the stable one is refused, with the stable on
   const std::string explicit_ = "mpm.integrator=\"explicit\"",
                     lagrangian = "mpm.formulation=\"updated_lagrangian\"";
   for (const std::vector<std::string>& settings : std::vector<std::vector<std::string>>{
-           {explicit_, "mpm.time_step=\"1.2 us\""},
-           {explicit_, "mpm.time_step=\"10 ms\""},
-           {lagrangian, "experiment.loading=\"diametral\"", "mpm.time_step=\"30 us\""},
+           {explicit_, "time.step=\"1.2 us\""},
+           {explicit_, "time.step=\"10 ms\""},
+           {lagrangian, "experiment.loading=\"diametral\"", "time.step=\"30 us\""},
        }) {
     const ProcessResult result = run_box(directory, settings);
     CAPTURE(result.err);
     CHECK(result.exit_code == 2);
-    CHECK(result.err.find("mpm.time_step ") != std::string::npos);
+    CHECK(result.err.find("time.step ") != std::string::npos);
     CHECK(result.err.find("is beyond the longest stable step of an explicit run of this case, ") !=
           std::string::npos);
-    CHECK(result.err.find("give at most that, or 0 for the default") != std::string::npos);
+    CHECK(result.err.find("give at most that, or \"auto\"") != std::string::npos);
     CHECK_FALSE(fs::exists(directory.path() / "out" / "run.json"));
   }
 }

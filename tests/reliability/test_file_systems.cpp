@@ -94,7 +94,7 @@ TEST_CASE("a run goes on after somebody tidied up: without vtk/, run.json or cas
   CHECK(nameless.err.find("nameless has no case.toml; `softgrain run CASE -o nameless --resume`") !=
         std::string::npos);
   fs::remove(workshop.path("nameless/run.json"));
-  const auto other = run_tiny(workshop, tiny, "nameless", {"--set", "contact.friction=0.1", "--resume"});
+  const auto other = run_tiny(workshop, tiny, "nameless", {"--set", "contact.wall_friction=0.1", "--resume"});
   CHECK(other.exit_code == 2);
   CHECK(other.err.find("is not the case that the run was begun with") != std::string::npos);
 }

@@ -24,10 +24,9 @@ Case cyclic_case(GrainModel model) {
   c.bpm.library = 1;
   c.bpm.inner_friction = 0.2;
   c.mpm.cells = 2;
-  c.mpm.time_step = 10e-6;
   c.contact.friction = 0.3;
   c.contact.wall_friction = 0.2;
-  c.time.step = 0.5e-6;
+  c.time.step = model == GrainModel::bpm ? 0.5e-6 : 10e-6;
   c.loading.wall_velocity = model == GrainModel::bpm ? 1 : 0.5;
   c.loading.unload_by = 0.01;
   for (int turn = 0; turn < 100000; ++turn) c.loading.unload_at.push_back(0.25 + 1e-12 * turn);

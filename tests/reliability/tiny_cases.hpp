@@ -23,20 +23,22 @@ inline Words with_settings(Words words, const Words& settings) {
 inline Words tiny_settings(const std::string& name) {
   const bool compaction = name.find("compaction") != std::string::npos;
   const bool bonded = name.find("bpm") != std::string::npos;
-  Words settings{"output.samples=20", "output.snapshots=6", "output.report=false", "contact.friction=0.3",
+  Words settings{"output.samples=20", "output.snapshots=6", "output.report=false",
                  "contact.wall_friction=0.2"};
   const auto add = [&](const Words& more) { settings.insert(settings.end(), more.begin(), more.end()); };
+  if (compaction || !bonded) add({"contact.friction=0.3"});
+  if (!compaction && bonded) add({"bpm.inner_friction=0.3"});
   if (bonded) add({"bpm.primaries=25", "bpm.library=1"});
   if (!bonded) add({"mpm.cells=4"});
   if (compaction) {
     add({"sample.grains=6", "sample.packing_fraction=0.62", "loading.wall_velocity=\"10 m/s\""});
     add({"loading.max_strain=0.32", "loading.unload_at=[0.28]", "loading.unload_by=0.08",
          "loading.max_stress=0"});
-    add(bonded ? Words{"bpm.inner_friction=0.1", "time.step=\"0.2 us\""} : Words{"mpm.time_step=\"4 us\""});
+    add(bonded ? Words{"bpm.inner_friction=0.1", "time.step=\"0.2 us\""} : Words{"time.step=\"4 us\""});
   } else {
     add({"loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.1", "loading.unload_at=[0.06]",
          "loading.unload_by=0.03"});
-    add(bonded ? Words{"time.step=\"0.25 us\""} : Words{"mpm.time_step=\"20 us\""});
+    add(bonded ? Words{"time.step=\"0.25 us\""} : Words{"time.step=\"20 us\""});
   }
   return settings;
 }
@@ -57,11 +59,11 @@ inline std::vector<TinyCase> tiny_cases() {
     settings.insert(settings.end(), more.begin(), more.end());
     cases.push_back({name, base, settings});
   };
-  add_variant("explicit-compaction", "compaction-mpm", {"mpm.integrator=\"explicit\"", "mpm.time_step=0"});
+  add_variant("explicit-compaction", "compaction-mpm", {"mpm.integrator=\"explicit\"", "time.step=0"});
   add_variant("explicit-diametral", "diametral-mpm",
-              {"mpm.integrator=\"explicit\"", "mpm.time_step=0", "grain.radius=\"1 mm\""});
+              {"mpm.integrator=\"explicit\"", "time.step=0", "grain.radius=\"1 mm\""});
   add_variant("updated-lagrangian", "diametral-mpm",
-              {"mpm.formulation=\"updated_lagrangian\"", "mpm.time_step=0", "grain.radius=\"1 mm\"",
+              {"mpm.formulation=\"updated_lagrangian\"", "time.step=0", "grain.radius=\"1 mm\"",
                "contact.friction=0", "contact.wall_friction=0"});
   return cases;
 }

@@ -63,7 +63,7 @@ def _packing(model, friction, seed, scale):
     if model == "bpm":
         values |= {"time.step": scale.bpm_step}
     else:
-        values |= {"mpm.cells": scale.cells, "mpm.time_step": "5 us", "loading.max_strain": 1,
+        values |= {"mpm.cells": scale.cells, "time.step": "5 us", "loading.max_strain": 1,
                    "loading.max_packing_fraction": scale.last_packing_fraction}
     return PlannedRun(packing_name(model, friction, seed), f"compaction-{model}", values)
 

@@ -5,6 +5,7 @@
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/estimate.hpp"
+#include "softgrain/experiment/sample.hpp"
 
 namespace softgrain {
 namespace {
@@ -23,7 +24,7 @@ double stress_of(const Case& c) {
 /// |d eps/dt| d at the start [m/s].
 double rate_times_diameter(const Case& c) {
   if (!is_in_a_box(c)) return c.loading.wall_velocity;  // v/(2 R) 2 R
-  const double diameter = (c.sample.smallest_diameter + c.sample.largest_diameter) / 2;
+  const double diameter = mean_diameter(diameter_law(c.sample));
   return c.loading.wall_velocity / box_height(c) * diameter;
 }
 

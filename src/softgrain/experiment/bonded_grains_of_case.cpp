@@ -26,8 +26,7 @@ RigidStepOptions rigid_step_options(const Case& c) {
 }
 
 FrictionRule friction_rule(const Case& c, std::vector<int> grain_of) {
-  const double inner = is_in_a_box(c) ? c.bpm.inner_friction : c.contact.friction;
-  const double between = c.contact.friction, wall = c.contact.wall_friction;
+  const double inner = c.bpm.inner_friction, between = c.contact.friction, wall = c.contact.wall_friction;
   return [=, grain = std::move(grain_of)](int a, int b) {
     if (b >= static_cast<int>(grain.size())) return wall;
     return grain[a] == grain[b] ? inner : between;

@@ -12,9 +12,33 @@ namespace {
 
 bool equal_size(const Case& c) { return c.bpm.equal == EqualPrimaries::size; }
 
+/// Radius over the smallest one for which the k-th aggregate of the library is made: the middles of equal
+/// shares of the radii, or the diameters of a list in turn.
+double size_of(const Case& c, int k) {
+  if (!equal_size(c)) return 1;
+  const double ratio = c.sample.largest_diameter / c.sample.smallest_diameter;
+  if (c.sample.sizes != SizeLaw::list) return 1 + (ratio - 1) * (k + 0.5) / c.bpm.library;
+  return c.sample.diameters[k % c.sample.diameters.size()] / c.sample.smallest_diameter;
+}
+
+/// The next of the aggregates that are nearest in size to a grain of this radius.
+int nearest_in_size(const Case& c, int grain, double radius) {
+  const auto distance = [&](int k) {
+    return std::abs(size_of(c, k) - 2 * radius / c.sample.smallest_diameter);
+  };
+  std::vector<int> nearest{0};
+  for (int k = 1; k < c.bpm.library; ++k) {
+    const double nearer = distance(nearest.front()) - distance(k);
+    if (nearer > 0) nearest.clear();
+    if (nearer >= 0) nearest.push_back(k);
+  }
+  return nearest[grain % nearest.size()];
+}
+
 /// Which aggregate a grain gets: the next one, or that whose number of primaries fits its radius.
 int choice_of(const Case& c, int grain, double radius) {
   if (!equal_size(c)) return grain % c.bpm.library;
+  if (c.sample.sizes == SizeLaw::list) return nearest_in_size(c, grain, radius);
   const double smallest = c.sample.smallest_diameter / 2, largest = c.sample.largest_diameter / 2;
   if (!(largest > smallest)) return 0;
   const double share = (radius - smallest) / (largest - smallest);
@@ -71,12 +95,9 @@ double separate_grains(BpmSample& sample, const BoxSample& box) {
 }  // namespace
 
 std::vector<Aggregate> prepare_library(const Case& c) {
-  const bool by_size = equal_size(c);
-  const double ratio = c.sample.largest_diameter / c.sample.smallest_diameter;
   std::vector<Aggregate> library;
   for (int k = 0; k < c.bpm.library; ++k) {
-    // the middle of the k-th share of the radii, over the smallest radius
-    const double size = by_size ? 1 + (ratio - 1) * (k + 0.5) / c.bpm.library : 1;
+    const double size = size_of(c, k);
     library.push_back(prepare_aggregate(
         {.primaries = static_cast<int>(std::lround(c.bpm.primaries * size * size)),
          .size_ratio = c.bpm.size_ratio,

@@ -11,7 +11,8 @@ namespace softgrain {
 
 /// The different aggregates of a packing, `bpm.library` of them. With bpm.equal = "count" all have
 /// bpm.primaries; with "size" their numbers grow as the squares of radii spread evenly from the smallest
-/// grain, which has bpm.primaries, to the largest, so that primaries in grains of any size are about equal.
+/// grain, which has bpm.primaries, to the largest, or of those of a list of diameters, so that primaries in
+/// grains of any size are about equal.
 std::vector<Aggregate> prepare_library(const Case& the_case);
 
 /// A box of grains of bonded primaries.

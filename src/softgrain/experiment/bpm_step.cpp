@@ -74,7 +74,7 @@ std::string bond_step_too_long(const Case& c) {
   if (c.experiment.model != GrainModel::bpm || !(c.time.step > critical)) return "";
   return fmt::format(
       "time.step {:.3g} s is longer than the critical step of the bonds, {:.3g} s; use a smaller time.step, "
-      "or 0 for "
+      "or \"auto\" for "
       "the stable one, {:.3g} s",
       c.time.step, critical, stable_bond_step(c));
 }

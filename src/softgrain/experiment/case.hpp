@@ -2,6 +2,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "softgrain/experiment/diameters.hpp"
+#include "softgrain/experiment/placed_grain.hpp"
 #include "softgrain/material/material_law.hpp"
 #include "softgrain/math/precision.hpp"
 #include "softgrain/mpm/contact_on.hpp"
@@ -44,7 +46,7 @@ struct Case {
     double attraction = 100;           ///< F0 of a grain between plates [N/m]
     double cohesive_pressure = 0.5e6;  ///< sigma_I = F0/<a0> of each grain of a packing [Pa]
     double exponent = 7;               ///< gamma [-]
-    double inner_friction = 0;         ///< mu between the primaries of a grain of a packing
+    double inner_friction = 0;         ///< mu between the primaries of a grain
     EqualPrimaries equal = EqualPrimaries::count;
     int library = 6;  ///< different aggregates of which a packing is made
   } bpm;
@@ -58,13 +60,12 @@ struct Case {
     Formulation formulation = Formulation::total_lagrangian;  ///< or updated, explicit, for comparison
     ShapeFunction shape_functions = ShapeFunction::gimp;      ///< of updated_lagrangian
     ContactOn contact_on = ContactOn::outline;                ///< of updated_lagrangian
-    double time_step = 0;  ///< dt [s]; 0: the plate moves 1 % of the smallest R (implicit), stable (explicit)
     double tolerance = 1e-4;  ///< largest last correction of Newton's method, over the mean grain radius
     double damping = 0;       ///< zeta [1/s] of f = -zeta m (v - v_walls)
   } mpm;
 
   struct Contact {
-    double friction = 0;       ///< mu between grains; of one bpm grain between plates: between its primaries
+    double friction = 0;       ///< mu between grains
     double wall_friction = 0;  ///< mu against walls
     double restitution = 0;    ///< e_n, Newton's
     Activation activation = Activation::anticipated;
@@ -92,7 +93,7 @@ struct Case {
   } loading;
 
   struct Time {
-    double step = 0;  ///< dt of the primaries [s]; 0: stable_bond_step
+    double step = 0;  ///< dt [s]; 0: the model's own (first_time_step)
   } time;
 
   struct Sample {
@@ -100,9 +101,20 @@ struct Case {
     int grains = 20;                ///< in a box
     double packing_fraction = 0.7;  ///< of the undeformed grains in the box at the start
     double aspect = 1;              ///< width over height of the box at the start
+    SizeLaw sizes = SizeLaw::uniform;
     double smallest_diameter = 1.4e-3,
-           largest_diameter = 2.4e-3;  ///< of grains in a box [m], uniform between
+           largest_diameter = 2.4e-3;   ///< of grains in a box [m]
+    double median_diameter = 1.8e-3;    ///< of lognormal sizes [m]
+    double deviation = 0.15;            ///< of ln d of lognormal sizes
+    std::vector<double> diameters{};    ///< of a list [m]
+    std::vector<double> shares{};       ///< of the grains' area that each of them has; empty: `numbers`
+    std::vector<double> numbers{};      ///< how many grains of each, in proportion; empty: as many of each
+    std::vector<PlacedGrain> placed{};  ///< in their places, instead of random ones; see complete_sample
   } sample;
+
+  struct Box {
+    double width = 0, height = 0;  ///< of placed grains [m]; 0: as far as the grains reach
+  } box;
 
   struct Output {
     int samples = 600;   ///< rows of series.csv, evenly over the run

@@ -23,6 +23,7 @@ Case twin_of(Case c) {
   c.sample.grains = std::min(c.sample.grains, 8);
   c.sample.packing_fraction = std::min(c.sample.packing_fraction, 0.2);
   c.sample.aspect = 1;
+  c.sample.placed.clear();
   return c;
 }
 

@@ -69,14 +69,14 @@ PlacedModel lattice_grain_of(const Case& c) {
                                       .friction = c.contact.friction,
                                       .wall_friction = c.contact.wall_friction,
                                       .damping = c.mpm.damping});
-  const double dt = c.mpm.time_step > 0 ? c.mpm.time_step
+  const double dt = c.time.step > 0 ? c.time.step
                                         : stable_time_step(dynamics.law, dynamics.density, cell);
   return {std::make_unique<LatticeGrains>(std::move(dynamics)), std::move(box), dt};
 }
 
 PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double smallest_radius) {
   const double dt =
-      c.mpm.time_step > 0 ? c.mpm.time_step : way_share * smallest_radius / c.loading.wall_velocity;
+      c.time.step > 0 ? c.time.step : way_share * smallest_radius / c.loading.wall_velocity;
   const ImplicitOptions options{.tolerance = tolerance_of(c, grains, box.height()),
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
@@ -86,7 +86,7 @@ PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double
 }
 
 PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box) {
-  const double dt = c.mpm.time_step > 0 ? c.mpm.time_step : stable_time_step(grains);
+  const double dt = c.time.step > 0 ? c.time.step : stable_time_step(grains);
   const ExplicitOptions options{.damping_share = damping_share,
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
@@ -109,12 +109,12 @@ double longest_time_step(const Case& c) {
 }
 
 void check_time_step(const Case& c) {
-  if (c.mpm.time_step == 0 || c.experiment.model != GrainModel::mpm) return;
+  if (c.time.step == 0 || c.experiment.model != GrainModel::mpm) return;
   const double longest = longest_time_step(c);
-  require(c.mpm.time_step <= longest,
-          "mpm.time_step {:.4g} us is beyond the longest stable step of an explicit run of this case, "
-          "{:.4g} us; give at most that, or 0 for the default",
-          1e6 * c.mpm.time_step, 1e6 * longest);
+  require(c.time.step <= longest,
+          "time.step {:.4g} us is beyond the longest stable step of an explicit run of this case, "
+          "{:.4g} us; give at most that, or \"auto\"",
+          1e6 * c.time.step, 1e6 * longest);
 }
 
 PlacedModel elastic_grains_of(const Case& c) {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "softgrain/experiment/bpm_step.hpp"
+#include "softgrain/experiment/sample.hpp"
 #include "softgrain/experiment/stage.hpp"
 
 namespace softgrain {
@@ -27,8 +28,8 @@ double wave_modulus(const Case& c) {
 /// Of all grains, undeformed, in the mean [m^2].
 double grain_area(const Case& c) {
   if (!is_in_a_box(c)) return std::numbers::pi * c.grain.radius * c.grain.radius;
-  const double a = c.sample.smallest_diameter, b = c.sample.largest_diameter;
-  return c.sample.grains * std::numbers::pi / 12 * (a * a + a * b + b * b);
+  if (!c.sample.placed.empty()) return c.sample.packing_fraction * c.box.width * c.box.height;
+  return c.sample.grains * std::numbers::pi / 4 * mean_square_diameter(diameter_law(c.sample));
 }
 
 /// Of all stages [s].
@@ -48,9 +49,8 @@ double loading_time(const Case& c) {
 /// Primaries of all grains.
 double primaries(const Case& c) {
   if (!is_in_a_box(c) || c.bpm.equal == EqualPrimaries::count) return grains(c) * c.bpm.primaries;
-  // mean of (R / R_min)^2 over radii spread evenly
-  const double ratio = c.sample.largest_diameter / c.sample.smallest_diameter;
-  return grains(c) * c.bpm.primaries * (1 + ratio + ratio * ratio) / 3;
+  const double R = smallest_radius(c);
+  return c.bpm.primaries * grain_area(c) / (std::numbers::pi * R * R);
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ double box_height(const Case& c) {
 
 double first_time_step(const Case& c) {
   if (c.experiment.model == GrainModel::bpm) return c.time.step > 0 ? c.time.step : stable_bond_step(c);
-  if (c.mpm.time_step > 0) return c.mpm.time_step;
+  if (c.time.step > 0) return c.time.step;
   if (is_implicit(c)) return 0.01 * smallest_radius(c) / c.loading.wall_velocity;
   // a share of the time in which a pressure wave crosses a cell; pi R^2 = 3.5 cells^2 h^2
   const double cell = smallest_radius(c) * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;

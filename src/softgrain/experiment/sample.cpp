@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/geometry/cell_grid.hpp"
@@ -53,10 +55,10 @@ double push_apart(BoxSample& sample, double clearance, double widest) {
 BoxSample drawn(const BoxSampleOptions& options, int draw) {
   BoxSample sample;
   double area = 0;
+  const std::vector<double> diameters =
+      draw_diameters(options.sizes, options.grains, options.seed, Stream::diameters, draw);
   for (int i = 0; i < options.grains; ++i) {
-    const std::uint64_t number = i + static_cast<std::uint64_t>(draw) * options.grains;
-    const double diameter = options.smallest + (options.largest - options.smallest) *
-                                                   random_uniform(options.seed, Stream::diameters, number);
+    const double diameter = diameters[i];
     sample.grains.push_back(
         {.centre = {},
          .radius = diameter / 2,
@@ -82,9 +84,9 @@ bool place(BoxSample& sample, const BoxSampleOptions& options, double clearance,
     sample.grains[i].centre = {sample.width * random_uniform(options.seed, Stream::places, number),
                                sample.height * random_uniform(options.seed, Stream::places, number + 1)};
   }
-  const double tolerance = 1e-3 * clearance * options.smallest;
+  const double tolerance = 1e-3 * clearance * options.sizes.least();
   for (int pass = 0; pass < most_passes; ++pass)
-    if (push_apart(sample, clearance, options.largest / 2) < tolerance) return true;
+    if (push_apart(sample, clearance, options.sizes.greatest() / 2) < tolerance) return true;
   return false;
 }
 
@@ -108,8 +110,7 @@ std::optional<BoxSample> search(const BoxSampleOptions& options, std::span<const
 
 void check(const BoxSampleOptions& options) {
   require(options.grains >= 1, "a sample needs at least one grain, got {}", options.grains);
-  require(options.smallest > 0 && options.largest >= options.smallest,
-          "diameters must be positive and in order, got {} m and {} m", options.smallest, options.largest);
+  check(options.sizes);
   require(options.packing_fraction > 0 && options.packing_fraction < 0.8,
           "the packing fraction of a random sample must be in (0, 0.8), got {}", options.packing_fraction);
   require(options.aspect > 0, "the aspect of a box must be positive, got {}", options.aspect);
@@ -145,9 +146,9 @@ double largest_packing_fraction(const BoxSampleOptions& options) {
 }
 
 BoxSample sample_box(const Case& c) {
+  if (!c.sample.placed.empty()) return {c.box.width, c.box.height, c.sample.placed};
   return sample_box({.grains = c.sample.grains,
-                     .smallest = c.sample.smallest_diameter,
-                     .largest = c.sample.largest_diameter,
+                     .sizes = diameter_law(c.sample),
                      .packing_fraction = c.sample.packing_fraction,
                      .aspect = c.sample.aspect,
                      .seed = static_cast<std::uint64_t>(c.sample.seed)});
@@ -163,6 +164,81 @@ Box<2> walls_of(const BoxSample& sample) {
                  {.point = {0, sample.height}, .normal = {0, -1}, .velocity = {}},
                  {.point = {0, 0}, .normal = {1, 0}, .velocity = {}},
                  {.point = {sample.width, 0}, .normal = {-1, 0}, .velocity = {}}});
+}
+
+DiameterLaw diameter_law(const Case::Sample& sample) {
+  DiameterLaw law{.law = sample.sizes,
+                  .smallest = sample.smallest_diameter,
+                  .largest = sample.largest_diameter,
+                  .median = sample.median_diameter,
+                  .deviation = sample.deviation,
+                  .diameters = sample.diameters,
+                  .numbers = sample.numbers};
+  if (law.law != SizeLaw::list) return law;
+  if (!sample.shares.empty()) {
+    law.numbers.clear();
+    for (std::size_t k = 0; k < std::min(sample.shares.size(), sample.diameters.size()); ++k)
+      law.numbers.push_back(sample.shares[k] / (sample.diameters[k] * sample.diameters[k]));
+  } else if (sample.numbers.empty()) {
+    law.numbers.assign(sample.diameters.size(), 1.0);
+  }
+  return law;
+}
+
+Case complete_sample(Case c) {
+  Case::Sample& sample = c.sample;
+  if (sample.sizes == SizeLaw::list && !sample.diameters.empty()) {
+    sample.smallest_diameter = std::ranges::min(sample.diameters);
+    sample.largest_diameter = std::ranges::max(sample.diameters);
+  }
+  if (sample.placed.empty()) return c;
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  Vec<2> low{infinite, infinite}, high{-infinite, -infinite};
+  double area = 0;
+  sample.smallest_diameter = infinite;
+  sample.largest_diameter = 0;
+  for (const PlacedGrain& grain : sample.placed) {
+    for (int k = 0; k < 2; ++k) {
+      low[k] = std::min(low[k], grain.centre[k] - grain.radius);
+      high[k] = std::max(high[k], grain.centre[k] + grain.radius);
+    }
+    area += std::numbers::pi * grain.radius * grain.radius;
+    sample.smallest_diameter = std::min(sample.smallest_diameter, 2 * grain.radius);
+    sample.largest_diameter = std::max(sample.largest_diameter, 2 * grain.radius);
+  }
+  double* const sides[] = {&c.box.width, &c.box.height};
+  for (int k = 0; k < 2; ++k) {
+    if (*sides[k] > 0) continue;
+    *sides[k] = high[k] - low[k];
+    for (PlacedGrain& grain : sample.placed) grain.centre[k] -= low[k];
+  }
+  sample.grains = static_cast<int>(sample.placed.size());
+  sample.packing_fraction = area / (c.box.width * c.box.height);
+  sample.aspect = c.box.width / c.box.height;
+  return c;
+}
+
+std::vector<Misplaced> misplaced_grains(const BoxSample& sample) {
+  std::vector<Misplaced> faults;
+  std::vector<Vec<2>> centres;
+  double widest = 0;
+  const Vec<2> size{sample.width, sample.height};
+  for (const PlacedGrain& grain : sample.grains) {
+    double outside = 0;
+    for (int k = 0; k < 2; ++k)
+      outside = std::max({outside, grain.radius - grain.centre[k], grain.centre[k] + grain.radius - size[k]});
+    if (outside > largest_placed_overlap * grain.radius)
+      faults.push_back({static_cast<int>(centres.size()), -1, outside});
+    centres.push_back(grain.centre);
+    widest = std::max(widest, grain.radius);
+  }
+  CellGrid<2>(centres, 2 * widest).for_each_close_pair([&](int i, int j) {
+    const PlacedGrain &a = sample.grains[i], &b = sample.grains[j];
+    const double depth = a.radius + b.radius - norm(b.centre - a.centre);
+    if (depth > largest_placed_overlap * std::min(a.radius, b.radius)) faults.push_back({j, i, depth});
+  });
+  std::ranges::sort(faults, {}, [](const Misplaced& fault) { return std::pair(fault.grain, fault.other); });
+  return faults;
 }
 
 }  // namespace softgrain

@@ -4,16 +4,11 @@
 
 #include "softgrain/experiment/case.hpp"
 #include "softgrain/geometry/box.hpp"
+#include "softgrain/experiment/diameters.hpp"
+#include "softgrain/experiment/placed_grain.hpp"
 #include "softgrain/math/vec.hpp"
 
 namespace softgrain {
-
-/// Grains as a sample places them, for any model.
-struct PlacedGrain {
-  Vec<2> centre;      ///< [m]
-  double radius = 0;  ///< [m]
-  double angle = 0;   ///< [rad] random orientation
-};
 
 /// A box with corner (0, 0).
 struct BoxSample {
@@ -23,9 +18,9 @@ struct BoxSample {
 
 struct BoxSampleOptions {
   int grains = 300;
-  double smallest = 1.4e-3, largest = 2.4e-3;  ///< diameters, uniform between [m]
-  double packing_fraction = 0.7;               ///< sum pi R^2 over the box's area
-  double aspect = 1;                           ///< width over height of the box
+  DiameterLaw sizes{};
+  double packing_fraction = 0.7;  ///< sum pi R^2 over the box's area
+  double aspect = 1;              ///< width over height of the box
   double clearance = 0.02;  ///< free distance round each grain, over its radius, where there is room for it
   std::uint64_t seed = 1;
 };
@@ -41,11 +36,32 @@ BoxSample sample_box(const BoxSampleOptions& options);
 /// up to that of the options. O(grains), and less than a second for 300.
 double largest_packing_fraction(const BoxSampleOptions& options);
 
-/// The sample of a case, the same for every model.
+/// The sample of a case, the same for every model: its placed grains, or random ones.
 BoxSample sample_box(const Case& the_case);
 
 /// The walls of a box with its corner at (0, 0); those below and above one grain [m].
 Box<2> walls_of(const BoxSample& sample);
 Box<2> walls_at(double low, double high);
+
+/// The law of the diameters of a case; shares of area become numbers.
+DiameterLaw diameter_law(const Case::Sample& sample);
+
+/// What a case says of its sample in more than one place, made one: the smallest and largest diameters follow
+/// a list; for placed grains also their number, the box (where the case leaves it open, their bounding box,
+/// whose corner comes to (0, 0)), packing fraction and aspect.
+Case complete_sample(Case the_case);
+
+/// Placed grains may overlap by this share of the smaller radius, and reach that far beyond a wall.
+inline constexpr double largest_placed_overlap = 0.01;
+
+/// A placed grain that cannot be where it is.
+struct Misplaced {
+  int grain;
+  int other;     ///< which it overlaps; -1: it is outside the box
+  double depth;  ///< of the overlap, or how far it is outside [m]
+};
+
+/// All of them, by grain. O(n).
+std::vector<Misplaced> misplaced_grains(const BoxSample& sample);
 
 }  // namespace softgrain

@@ -75,6 +75,13 @@ std::span<const Word<Activation>> words_of() {
 }
 
 template <>
+std::span<const Word<SizeLaw>> words_of() {
+  static constexpr std::array words{Word{SizeLaw::uniform, "uniform"}, Word{SizeLaw::lognormal, "lognormal"},
+                                    Word{SizeLaw::list, "list"}};
+  return words;
+}
+
+template <>
 std::span<const Word<Precision>> words_of() {
   static constexpr std::array words{Word{Precision::single, "single"}, Word{Precision::full, "double"}};
   return words;

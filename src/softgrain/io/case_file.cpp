@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cctype>
-#include <map>
-#include <set>
+#include <optional>
 
+#include "softgrain/experiment/sample.hpp"
+#include "softgrain/experiment/words.hpp"
 #include "softgrain/io/case_relations.hpp"
 #include "softgrain/io/case_value.hpp"
-#include "softgrain/io/file.hpp"
+#include "softgrain/io/form_reader.hpp"
+#include "softgrain/io/placement.hpp"
 #include "softgrain/io/schema.hpp"
 #include "softgrain/io/suggest.hpp"
 #include "softgrain/io/toml_document.hpp"
@@ -17,69 +19,65 @@
 namespace softgrain {
 namespace {
 
-/// Where a value was given: a place in the file, or the n-th --set.
-struct Origin {
-  int set = -1;
-  TextPosition at;
-
-  friend auto operator<=>(const Origin&, const Origin&) = default;
-};
-
-constexpr std::size_t most_errors = 100;  // the rest of the file is not read
-
-struct Issue {
-  Origin origin;
-  std::string message;
-};
-
 /// Collects every error of a file and its overrides, and fills in the case on the way.
 class CaseReader {
  public:
   CaseReader(std::string_view text, const std::string& name, const std::vector<std::string>& sets)
-      : text_(text), name_(name), sets_(sets) {}
+      : sources_{{name, std::string(text)}}, sets_(sets) {}
 
   CaseReading read() {
-    read_file_text();
-    for (std::size_t i = 0; i < sets_.size(); ++i) read_set(static_cast<int>(i));
-    check_relations();
-    if (!issues_.empty()) throw CaseFileError(report());
-    return {case_, without_effect()};
+    try {
+      read_file_text();
+      forms_.finish_file();
+      for (std::size_t i = 0; i < sets_.size(); ++i) read_set(static_cast<int>(i));
+      settle_time_step();
+      given_ = draft_.the_case;
+      const PlacedLines lines = place_grains(forms_, draft_, sources_);
+      draft_.the_case = complete_sample(draft_.the_case);
+      check_placement(draft_, lines);
+      check_relations();
+    } catch (const TooManyIssues&) {
+    }
+    if (!draft_.issues.empty()) throw CaseFileError(report(draft_.issues, sources_, sets_));
+    return {draft_.the_case, without_effect(), draft_.notes};
   }
 
  private:
-  /// A default that the file repeats is no wish: `softgrain new` and resolved cases write every key.
+  /// A default that the file repeats is no wish: `softgrain new --all` and resolved cases write every key.
+  /// Nor is what a sample's file or list says anyway.
   std::vector<std::string> without_effect() {
     std::vector<std::string> names;
     for (const Key& key : case_keys()) {
-      const auto given = origins_.find(key.name);
-      if (given == origins_.end() || key.acts.covers(case_)) continue;
-      if (given->second.set >= 0 || si_value(case_, key) != si_value(Case{}, key)) names.push_back(key.name);
+      const auto at = draft_.origins.find(key.name);
+      if (at == draft_.origins.end() || key.acts.covers(draft_.the_case)) continue;
+      const std::string value = si_value(given_, key), held = si_value(draft_.the_case, key);
+      const bool repeats = value == si_value(Case{}, key) || (is_derived(key) && value == held);
+      if (at->second.set >= 0 || !repeats) names.push_back(key.name);
     }
     return names;
+  }
+
+  static bool is_derived(const Key& key) {
+    return key.name == "sample.grains" || key.name == "sample.packing_fraction" ||
+           key.name == "sample.aspect" || key.name == "sample.smallest_diameter" ||
+           key.name == "sample.largest_diameter";
   }
 
   /// A line that is no TOML is reported and left out, so that one slip of the pen does not hide the other
   /// errors.
   void read_file_text() {
-    std::string text(text_);
+    std::string text = sources_.front().text;
     for (int attempt = 0; attempt < 20; ++attempt) {
       try {
         for (const TomlMember& member : parse_toml(text)) read_table(member);
         return;
       } catch (const TomlError& error) {
         const std::string_view line = line_of(text, error.at.line);
-        add({-1, error.at}, error.what() + quotes_missing(line, error.what()));
+        draft_.add({.at = error.at}, error.what() + quotes_missing(line, error.what()));
         if (line.starts_with('[') || line.find('=') == std::string_view::npos) return;
         text.replace(static_cast<std::size_t>(line.data() - text.data()), line.size(), line.size(), ' ');
       }
     }
-  }
-
-  static std::string_view line_of(std::string_view text, int number) {
-    if (number == 0) return "";
-    for (int line = 1; line < number; ++line) text.remove_prefix(std::min(text.size(), text.find('\n') + 1));
-    text = text.substr(0, text.find('\n'));
-    return text.substr(0, text.find('\r'));
   }
 
   /// The remedy for `radius = 5 mm`.
@@ -91,27 +89,30 @@ class CaseReader {
   }
 
   void read_table(const TomlMember& member) {
+    const Origin origin{.at = member.at};
+    if (contains(form_tables(), member.key)) return forms_.read_tables(member.key, member.value, origin);
     const auto* entries = std::get_if<TomlValue::Table>(&member.value.content);
     if (entries == nullptr) {
-      add({-1, member.at}, is_table(member.key)
-                               ? fmt::format("'{}' is a table: write [{}]", member.key, member.key)
-                               : unknown_key(member.key));
-    } else if (!is_table(member.key)) {
-      add({-1, member.at},
-          fmt::format("unknown table '{}'{}", member.key, did_you_mean(member.key, table_names())));
+      draft_.add(origin, contains(case_tables(), member.key)
+                             ? fmt::format("'{}' is a table: write [{}]", member.key, member.key)
+                             : unknown_key(member.key));
+    } else if (!contains(case_tables(), member.key)) {
+      draft_.add(origin,
+                 fmt::format("unknown table '{}'{}", member.key, did_you_mean(member.key, table_names())));
     } else {
       for (const TomlMember& entry : *entries)
-        read_key(member.key + "." + entry.key, entry.value, {-1, entry.at});
+        read_key(member.key + "." + entry.key, entry.value, {.at = entry.at});
     }
   }
 
   void read_set(int i) {
     const std::string& argument = sets_[static_cast<std::size_t>(i)];
     const auto equals = argument.find('=');
-    if (equals == std::string::npos) return add({i, {}}, "expected key=value, as in time.step=0.5e-6");
+    if (equals == std::string::npos)
+      return draft_.add({.set = i}, "expected key=value, as in time.step=0.5e-6");
     std::string name = argument.substr(0, equals);
     name.erase(name.find_last_not_of(' ') + 1);
-    read_key(name, value_of(argument.substr(equals + 1)), {i, {}});
+    read_key(name, value_of(argument.substr(equals + 1)), {.set = i});
   }
 
   /// TOML where it is TOML, otherwise the text itself: 0.05 us needs no quotes.
@@ -125,31 +126,63 @@ class CaseReader {
   }
 
   void read_key(const std::string& name, const TomlValue& value, Origin origin) {
-    origins_[name] = origin;
-    const Key* key = find_key(name);
-    if (key == nullptr) return add(origin, unknown_key(name));
+    if (name == "mpm.time_step") return read_old_step(value, origin);
+    if (const Key* key = find_key(name)) return draft_.give(*key, name, value, origin);
+    if (!forms_.read_key(name, value, origin)) draft_.add(origin, unknown_key(name));
+  }
+
+  /// Before there was one key for all models, elastic grains had their own.
+  void read_old_step(const TomlValue& value, Origin origin) {
+    Key key = *find_key("time.step");
+    key.name = "mpm.time_step";
+    Case scratch;
     try {
-      assign(case_, *key, value);
+      assign(scratch, key, value);
+      old_step_ = scratch.time.step;
+      old_step_origin_ = origin;
     } catch (const UsageError& error) {
       if (value.at.line > 0) origin.at = value.at;
-      add(origin, error.what());
-      invalid_.insert(name);
+      draft_.add(origin, error.what());
     }
+  }
+
+  /// Where the old key is given, time.step of the file was that of bonded grains alone.
+  void settle_time_step() {
+    if (!old_step_) return;
+    Case& c = draft_.the_case;
+    const double step_given = c.time.step;
+    const auto step = draft_.origins.find("time.step");
+    const bool is_newer =
+        step != draft_.origins.end() && step->second > old_step_origin_ && step->second.set >= 0;
+    const bool counts = c.experiment.model == GrainModel::mpm && !is_newer;
+    if (counts) {
+      c.time.step = *old_step_;
+      draft_.origins["time.step"] = old_step_origin_;
+    }
+    if (counts && step_given != 0 && step_given != *old_step_)
+      draft_.notes.push_back(
+          "note: time.step has no effect beside mpm.time_step, its old name: leave that out");
+    if (*old_step_ == 0 && old_step_origin_.set < 0) return;  // as files of former versions repeat it
+    Case now;
+    now.time.step = *old_step_;
+    draft_.notes.push_back(fmt::format("note: mpm.time_step is an old name{}; write time.step = {}",
+                                       counts ? "" : " and has no effect here",
+                                       written_value(now, *find_key("time.step"))));
   }
 
   void check_relations() {
     for (const Relation& relation : case_relations()) {
-      const auto is_invalid = [&](const std::string& key) { return invalid_.contains(key); };
+      const auto is_invalid = [&](const std::string& key) { return !draft_.is_valid(key); };
       if (std::any_of(relation.keys.begin(), relation.keys.end(), is_invalid)) continue;
-      const std::string message = relation.broken(case_);
-      if (!message.empty()) add(last_origin(relation.keys), message);
+      const std::string message = relation.broken(draft_.the_case);
+      if (!message.empty()) draft_.add(last_origin(relation.keys), message);
     }
   }
 
   Origin last_origin(const std::vector<std::string>& keys) const {
     Origin last;
     for (const std::string& key : keys)
-      if (const auto found = origins_.find(key); found != origins_.end())
+      if (const auto found = draft_.origins.find(key); found != draft_.origins.end())
         last = std::max(last, found->second);
     return last;
   }
@@ -166,70 +199,22 @@ class CaseReader {
   static std::vector<std::string> table_names() {
     std::vector<std::string> names;
     for (const TableOfKeys& table : case_tables()) names.push_back(table.name);
+    for (const TableOfKeys& table : form_tables()) names.push_back(table.name);
     return names;
   }
 
-  static bool is_table(const std::string& name) {
-    const auto names = table_names();
-    return std::find(names.begin(), names.end(), name) != names.end();
+  static bool contains(const std::vector<TableOfKeys>& tables, const std::string& name) {
+    return std::ranges::find(tables, name, &TableOfKeys::name) != tables.end();
   }
 
-  void add(Origin origin, std::string message) {
-    issues_.push_back({origin, std::move(message)});
-    if (issues_.size() == most_errors) throw CaseFileError(report());
-  }
-
-  std::string report() {
-    std::stable_sort(issues_.begin(), issues_.end(),
-                     [](const Issue& a, const Issue& b) { return a.origin < b.origin; });
-    std::string text;
-    for (const Issue& issue : issues_) text += show(issue);
-    return text + fmt::format("{} error{}; nothing was run", issues_.size(), issues_.size() == 1 ? "" : "s");
-  }
-
-  std::string show(const Issue& issue) const {
-    const auto& [set, at] = issue.origin;
-    if (set >= 0)
-      return fmt::format("--set {}: error: {}\n", sets_[static_cast<std::size_t>(set)], issue.message);
-    if (at.line == 0) return fmt::format("{}: error: {}\n", name_, issue.message);
-    return fmt::format("{}:{}:{}: error: {}\n", name_, at.line, at.column, issue.message) + source_line(at);
-  }
-
-  /// The line of the file with a caret under the column; nothing where the line would flood or harm a
-  /// terminal.
-  std::string source_line(TextPosition at) const {
-    const std::string_view line = line_of(text_, at.line);
-    if (line.size() > 200 || !is_printable(line)) return "";
-    std::string blank;  // a tab stays a tab, so that the caret stands where the terminal puts the column
-    int column = 1;
-    for (std::size_t i = 0; i < line.size() && column < at.column; ++i) {
-      if ((static_cast<unsigned char>(line[i]) & 0xC0u) == 0x80u) continue;  // inside a UTF-8 character
-      blank += line[i] == '\t' ? '\t' : ' ';
-      ++column;
-    }
-    return fmt::format("{:5} | {}\n      | {}^\n", at.line, line, blank);
-  }
-
-  std::string_view text_;
-  std::string name_;
+  std::vector<Source> sources_;  // the case file, and the sample's
   const std::vector<std::string>& sets_;
-  Case case_;
-  std::map<std::string, Origin> origins_;
-  std::set<std::string> invalid_;
-  std::vector<Issue> issues_;
+  CaseDraft draft_;
+  FormReader forms_{draft_};
+  Case given_;  // before what follows from other keys was filled in
+  std::optional<double> old_step_;
+  Origin old_step_origin_;
 };
-
-std::string read_case_text(const std::string& path) {
-  constexpr std::size_t largest = 1'000'000;
-  std::string text;
-  try {
-    text = read_beginning(path, largest + 1);
-  } catch (const IoError& error) {
-    throw UsageError(error.what());
-  }
-  require(text.size() <= largest, "{} is larger than 1 MB: not a case file", path);
-  return text;
-}
 
 }  // namespace
 
@@ -243,11 +228,11 @@ CaseReading parse_case_with_notes(std::string_view text, const std::string& name
 }
 
 CaseReading read_case_with_notes(const std::string& path, const std::vector<std::string>& sets) {
-  return parse_case_with_notes(read_case_text(path), path, sets);
+  return parse_case_with_notes(read_limited(path, "a case file"), path, sets);
 }
 
 Case read_case(const std::string& path, const std::vector<std::string>& sets) {
-  return parse_case(read_case_text(path), path, sets);
+  return parse_case(read_limited(path, "a case file"), path, sets);
 }
 
 }  // namespace softgrain

@@ -25,6 +25,7 @@ struct CaseReading {
   /// Full names of the keys that do nothing in this case although they were given: by an override, or in the
   /// file with another value than the default; in the order of the schema.
   std::vector<std::string> without_effect;
+  std::vector<std::string> notes{};  ///< on old spellings: what to write now
 };
 CaseReading read_case_with_notes(const std::string& path, const std::vector<std::string>& sets = {});
 

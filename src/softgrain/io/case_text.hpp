@@ -13,15 +13,11 @@ std::string resolved_case_text(const Case& the_case);
 /// The resolved case as JSON: an object for each table.
 std::string case_json(const Case& the_case);
 
-/// A case file to edit: every key with its value in the unit in which people write it, and what it means
-/// above it.
-std::string commented_case_text(const Case& the_case);
+enum class Keys { all, that_act };
 
-/// JSON Schema (draft 2020-12) of a case file: editors complete and check with it.
-std::string case_json_schema();
-
-/// The reference page docs/reference/case-file.md.
-std::string case_reference_page();
+/// A case file to edit: keys with their values in the unit in which people write them, and what they mean
+/// above them. The keys that act in this case, or all.
+std::string commented_case_text(const Case& the_case, Keys keys);
 
 /// A named start for `softgrain new`.
 struct CaseTemplate {

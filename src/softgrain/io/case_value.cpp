@@ -51,6 +51,8 @@ void check_range(const Key& key, double number, const TomlValue& value) {
 
 double read_number(const Key& key, const TomlValue& value) {
   double number = 0;
+  const auto* word = std::get_if<std::string>(&value.content);
+  if (word != nullptr && !key.zero_word.empty() && *word == key.zero_word) return 0;
   if (const auto* i = std::get_if<std::int64_t>(&value.content)) {
     number = static_cast<double>(*i);
   } else if (const auto* x = std::get_if<double>(&value.content)) {
@@ -80,6 +82,18 @@ Integer read_integer(const Key& key, const TomlValue& value) {
   return static_cast<Integer>(*i);
 }
 
+/// [x, y, radius, angle] in SI.
+PlacedGrain read_grain(const Key& key, const TomlValue& value) {
+  const auto* items = std::get_if<TomlValue::Array>(&value.content);
+  std::vector<double> numbers;
+  if (items != nullptr)
+    for (const TomlValue& item : *items) numbers.push_back(read_number(key, item));
+  require(numbers.size() == 4 && numbers[2] > 0,
+          "{} takes four numbers for each grain, [x, y, radius, angle] in m and rad, with radius > 0; got {}",
+          key.name, items == nullptr ? shown(value) : fmt::format("[{}]", fmt::join(numbers, ", ")));
+  return {.centre = {numbers[0], numbers[1]}, .radius = numbers[2], .angle = numbers[3]};
+}
+
 struct Assign {
   Case& the_case;
   const Key& key;
@@ -101,6 +115,13 @@ struct Assign {
     if (!member.assign(the_case, *word))
       throw UsageError(fmt::format("{} takes {}, got '{}'{}", key.name, kind_in_words(key), *word,
                                    did_you_mean(*word, member.words())));
+  }
+  void operator()(MemberOf<std::vector<PlacedGrain>> member) const {
+    const auto* items = std::get_if<TomlValue::Array>(&value.content);
+    if (items == nullptr) wrong_type(key, value);
+    std::vector<PlacedGrain> grains;
+    for (const TomlValue& item : *items) grains.push_back(read_grain(key, item));
+    member(the_case) = std::move(grains);
   }
   void operator()(MemberOf<std::vector<double>> member) const {
     const auto* items = std::get_if<TomlValue::Array>(&value.content);
@@ -143,11 +164,20 @@ std::string text_of(const Case& the_case, const Key& key, const WriteNumber& wri
     const auto& value = member(copy);
     using T = std::decay_t<decltype(value)>;
     if constexpr (std::is_same_v<T, double>) {
-      return write_number(value);
+      return value == 0 && !std::signbit(value) && !key.zero_word.empty()
+                 ? fmt::format("\"{}\"", key.zero_word)
+                 : write_number(value);
     } else if constexpr (std::is_same_v<T, std::vector<double>>) {
       std::vector<std::string> items;
       for (const double item : value) items.push_back(write_number(item));
       return fmt::format("[{}]", fmt::join(items, ", "));
+    } else if constexpr (std::is_same_v<T, std::vector<PlacedGrain>>) {
+      std::string list;
+      for (const PlacedGrain& grain : value)
+        list +=
+            fmt::format("{}\n  [{}, {}, {}, {}]", list.empty() ? "" : ",", write_number(grain.centre[0]),
+                        write_number(grain.centre[1]), write_number(grain.radius), write_number(grain.angle));
+      return fmt::format("[{}{}]", list, list.empty() ? "" : "\n");
     } else if constexpr (std::is_same_v<T, std::string_view>) {
       return fmt::format("\"{}\"", value);
     } else {
@@ -167,10 +197,21 @@ std::string kind_in_words(const Key& key) {
   if (std::holds_alternative<MemberOf<bool>>(key.member)) return "true or false";
   if (const auto* enumerated = std::get_if<WordMember>(&key.member))
     return fmt::format("one of \"{}\"", fmt::join(enumerated->words(), "\", \""));
-  if (std::holds_alternative<MemberOf<double>>(key.member)) return in_words(parse_unit(key.unit).dimension);
+  if (std::holds_alternative<MemberOf<double>>(key.member))
+    return (key.zero_word.empty() ? "" : fmt::format("\"{}\" or ", key.zero_word)) +
+           in_words(parse_unit(key.unit).dimension);
+  if (std::holds_alternative<MemberOf<std::vector<PlacedGrain>>>(key.member)) return "a list of grains";
   if (!std::holds_alternative<MemberOf<std::vector<double>>>(key.member)) return "a whole number";
   return key.unit.empty() ? "a list of plain numbers"
                           : fmt::format("a list, each {}", in_words(parse_unit(key.unit).dimension));
+}
+
+std::string si_unit_of(const Key& key) { return si_unit(parse_unit(key.unit).dimension); }
+
+std::string accepted(const Key& key) {
+  const std::string range = key.range.text();
+  return kind_in_words(key) + (range.empty() ? "" : ", " + range) +
+         (range.empty() || key.unit.empty() ? "" : " " + si_unit_of(key));
 }
 
 std::string written_value(const Case& the_case, const Key& key) {

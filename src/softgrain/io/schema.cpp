@@ -74,7 +74,7 @@ std::vector<Key> all_keys() {
       KEY(bpm.exponent, "", at_least(1),
           "exponent gamma of F0 (a0/r)^gamma, r the distance of the centres, a0 the sum of the radii", with_bpm),
 
-      KEY(bpm.inner_friction, "", at_least(0), "coefficient of friction mu between the primaries of a grain (in a box)", bpm_in_a_box),
+      KEY(bpm.inner_friction, "", at_least(0), "coefficient of friction mu between the primaries of a grain", with_bpm),
       KEY(bpm.equal, "", its_words(),
           "what all grains share: the number of primaries, or, to about 5 %, their size (in a box)", bpm_in_a_box),
       KEY(bpm.library, "", from_to(1, 1000), "different aggregates of which the grains are copies (in a box)", bpm_in_a_box),
@@ -90,16 +90,13 @@ std::vector<Key> all_keys() {
       KEY(mpm.shape_functions, "", its_words(), "of the lattice (updated_lagrangian)", updated_lagrangian),
       KEY(mpm.contact_on, "", its_words(),
           "where contact acts; total_lagrangian: on the outline only", updated_lagrangian),
-      KEY(mpm.time_step, "us", at_least(0),
-          "time step; 0: the plate moves 1 % of the smallest radius (implicit), or a stable step (explicit, which "
-          "divides steps while cells need it, and refuses a longer one than is stable at the start)", with_mpm),
       KEY(mpm.damping, "1/s", at_least(0),
           "rate zeta of the damping f = -zeta m (v - v_walls), v_walls the velocity that the walls give to what lies "
           "between them; 0: none; a free grain slows down by exp(-zeta t)", with_mpm),
       KEY(mpm.tolerance, "", positive(), "largest last correction of Newton's method over the mean grain radius", implicit),
 
       KEY(contact.friction, "", at_least(0),
-          "coefficient of friction mu between grains; diametral test of a bpm grain: between its primaries", with_pairs),
+          "coefficient of friction mu between grains; never inside one: bpm.inner_friction", with_pairs),
       KEY(contact.wall_friction, "", at_least(0), "coefficient of friction mu against walls"),
       KEY(contact.restitution, "", from_to(0, 1), "Newton's coefficient of restitution e_n", with_bpm),
       KEY(contact.activation, "", its_words(),
@@ -133,15 +130,29 @@ std::vector<Key> all_keys() {
           "(in a box)", in_a_box),
 
       KEY(time.step, "us", at_least(0),
-          "time step dt (bpm); 0: stable step, a 43rd of the period of the bonds between the smallest primaries", with_bpm),
+          "time step dt; auto: bpm: a 43rd of the period of the bonds between the smallest primaries; implicit mpm: the "
+          "plate moves 1 % of the smallest radius; explicit mpm: a stable step, which is divided while cells need it", everywhere, "auto"),
 
       KEY(sample.seed, "", at_least(0),
           "seed of the random numbers; another seed is another sample of the same grain", with_chance),
-      KEY(sample.grains, "", from_to(1, 1e6), "grains in the box", in_a_box),
-      KEY(sample.packing_fraction, "", between(0, 0.8), "undeformed grain area over box area at the start", in_a_box),
-      KEY(sample.aspect, "", from_to(0.01, 100), "width over height of the box at the start", in_a_box),
-      KEY(sample.smallest_diameter, "mm", positive(), "of the grains in the box, uniform between", in_a_box),
-      KEY(sample.largest_diameter, "mm", positive(), "of the grains in the box", in_a_box),
+      KEY(sample.grains, "", from_to(1, 1e6), "grains in the box", random),
+      KEY(sample.packing_fraction, "", between(0, 1), "undeformed grain area over box area at the start, below 0.8", random),
+      KEY(sample.aspect, "", from_to(1e-4, 1e4), "width over height of the box at the start", random),
+      KEY(sample.sizes, "", its_words(),
+          "law of the diameters, by number of grains; uniform between smallest and largest; lognormal with a median, cut "
+          "off below smallest and above largest; list: sample.diameters", random),
+      KEY(sample.smallest_diameter, "mm", positive(), "of the grains in the box, or lower cut-off", random_between),
+      KEY(sample.largest_diameter, "mm", positive(), "of the grains in the box, or upper cut-off", random_between),
+      KEY(sample.median_diameter, "mm", positive(), "median of lognormal sizes before they are cut off", lognormal),
+      KEY(sample.deviation, "", between(0, 3), "standard deviation of ln d of lognormal sizes before they are cut off", lognormal),
+      KEY(sample.diameters, "mm", positive(), "diameters of the list", listed),
+      KEY(sample.shares, "", positive(), "share of the grains' area that each diameter of the list has, in proportion", listed),
+      KEY(sample.numbers, "", positive(),
+          "how many grains have each diameter of the list, in proportion; neither shares nor numbers: as many of each", listed),
+      KEY(sample.placed, "", anything(),
+          "the grains in their places, [x, y, radius, angle] of each in m and rad: what a run writes for sample.file", placed),
+      KEY(box.width, "mm", at_least(0), "of the box of placed grains; auto: from the first to the last point of all grains", placed, "auto"),
+      KEY(box.height, "mm", at_least(0), "of the box of placed grains; auto: from the lowest to the highest point of all grains", placed, "auto"),
 
       KEY(output.samples, "", from_to(1, 1e6), "rows of series.csv, evenly over the run"),
       KEY(output.snapshots, "", from_to(0, 1e5), "restart points, evenly over the run"),
@@ -161,6 +172,7 @@ std::vector<TableOfKeys> all_tables() {
       {"loading", "What the plates do."},
       {"time", "Time stepping."},
       {"sample", "The initial state."},
+      {"box", "What holds the grains."},
       {"output", "What is written."},
   };
 }

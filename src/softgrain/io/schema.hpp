@@ -34,7 +34,7 @@ struct WordMember {
   std::string_view operator()(const Case& c) const { return word(c); }
 };
 using Member = std::variant<MemberOf<bool>, MemberOf<int>, MemberOf<std::int64_t>, MemberOf<double>,
-                            WordMember, MemberOf<std::vector<double>>>;
+                            WordMember, MemberOf<std::vector<double>>, MemberOf<std::vector<PlacedGrain>>>;
 
 /// One key of a case file. Its default is the value in Case{}.
 struct Key {
@@ -44,7 +44,8 @@ struct Key {
       unit;  ///< in which people write it: "mm"; fixes the dimension; "" for plain numbers and words
   Range range;
   std::string_view text;
-  Scope acts = scope::everywhere;  ///< where it acts; elsewhere it is taken, and a note says so
+  Scope acts = scope::everywhere;   ///< where it acts; elsewhere it is taken, and a note says so
+  std::string_view zero_word = "";  ///< a word for the number 0: "auto"
 
   std::string table() const { return name.substr(0, name.find('.')); }
   std::string short_name() const { return name.substr(name.find('.') + 1); }
@@ -59,6 +60,16 @@ struct TableOfKeys {
 /// it.
 const std::vector<Key>& case_keys();
 const std::vector<TableOfKeys>& case_tables();
+
+/// Calls `on_table` for each table and `on_key` for each of its keys.
+template <class OnTable, class OnKey>
+void for_each_key(const OnTable& on_table, const OnKey& on_key) {
+  for (const TableOfKeys& table : case_tables()) {
+    on_table(table);
+    for (const Key& key : case_keys())
+      if (key.table() == table.name) on_key(key);
+  }
+}
 
 /// nullptr when there is no key of this full name.
 const Key* find_key(std::string_view name);

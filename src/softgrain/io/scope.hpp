@@ -39,8 +39,20 @@ inline constexpr Scope implicit{
 inline constexpr Scope with_pairs{"on bpm or between the grains of a box", [](const Case& c) {
                                     return is_bpm(c) || (is_in_a_box(c) && c.sample.grains > 1);
                                   }};
-inline constexpr Scope with_chance{"on bpm or in a box",
-                                   [](const Case& c) { return is_bpm(c) || is_in_a_box(c); }};
+inline bool is_placed(const Case& c) { return is_in_a_box(c) && !c.sample.placed.empty(); }
+inline bool is_random(const Case& c) { return is_in_a_box(c) && c.sample.placed.empty(); }
+inline bool has_sizes(const Case& c, SizeLaw law) { return is_random(c) && c.sample.sizes == law; }
+inline constexpr Scope with_chance{"on bpm or random grains in a box",
+                                   [](const Case& c) { return is_bpm(c) || is_random(c); }};
+inline constexpr Scope placed{"in a box of placed grains (sample.file)", is_placed};
+inline constexpr Scope random{"on random grains in a box", is_random};
+inline constexpr Scope random_between{
+    "on random grains in a box, with sample.sizes uniform or lognormal",
+    [](const Case& c) { return is_random(c) && c.sample.sizes != SizeLaw::list; }};
+inline constexpr Scope lognormal{"with sample.sizes lognormal",
+                                 [](const Case& c) { return has_sizes(c, SizeLaw::lognormal); }};
+inline constexpr Scope listed{"with sample.sizes list",
+                              [](const Case& c) { return has_sizes(c, SizeLaw::list); }};
 inline constexpr Scope with_unloading{"with loading.unload_at",
                                       [](const Case& c) { return !c.loading.unload_at.empty(); }};
 

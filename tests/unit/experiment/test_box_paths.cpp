@@ -119,7 +119,7 @@ TEST_CASE("walls keep the stress of a packing that they are asked to keep") {
   for (const LoadingPath loading : {LoadingPath::compaction, LoadingPath::isotropic}) {
     CAPTURE(loading);
     Case c = soft_packing(loading);
-    c.mpm.time_step = 5e-6;
+    c.time.step = 5e-6;
     c.loading.hold = 1.5e-3;
     c.loading.hold_stress = 4e5;
     CHECK(held_stress(*create_simulation(c), 300) == doctest::Approx(4e5).epsilon(0.01));

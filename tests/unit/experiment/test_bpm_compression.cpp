@@ -134,7 +134,7 @@ TEST_CASE("the plates start at the grain's lowest and highest point, and the top
 
 TEST_CASE("the grain weighs rho pi R^2 and friction differs inside and at the walls") {
   Case c = small_case();
-  c.contact.friction = 0.2;
+  c.bpm.inner_friction = 0.2;
   c.contact.wall_friction = 0.5;
   const Simulation simulation = test::simulation_of(c);
   const auto& particles = test::bonded(simulation).particles;

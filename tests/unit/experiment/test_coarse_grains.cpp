@@ -42,7 +42,7 @@ TEST_CASE("grains of few cells start without overlap and store nothing at once")
       CAPTURE(cells);
       CAPTURE(integrator);
       Case c = packing(cells, integrator);
-      c.mpm.time_step = 4e-8;  // the lid moves by nothing
+      c.time.step = 4e-8;  // the lid moves by nothing
       const auto simulation = create_simulation(c);
       check_at_rest(c, *simulation);
       simulation->step();
@@ -54,7 +54,7 @@ TEST_CASE("an explicit start of grains of two cells does not depend on the step"
   for (const double step : {9e-8, 4e-8, 1e-8}) {
     CAPTURE(step);
     Case c = packing(2, Integrator::symplectic_euler, 300);
-    c.mpm.time_step = step;
+    c.time.step = step;
     const auto simulation = create_simulation(c);
     for (int k = 0; k < 20; ++k) simulation->step();
     check_at_rest(c, *simulation);
@@ -85,7 +85,7 @@ TEST_CASE("a grain of any number of cells starts between plates that only touch 
       c.experiment = {.loading = LoadingPath::diametral, .model = GrainModel::mpm};
       c.mpm.cells = cells;
       c.mpm.integrator = integrator;
-      c.mpm.time_step = 1e-7;
+      c.time.step = 1e-7;
       c.loading = {.wall_velocity = 2e-5, .max_strain = 1e-3, .unload_at = {}};
       const auto simulation = create_simulation(c);
       CHECK(test::value_of(test::next_row(*simulation), "wall_height") == doctest::Approx(2 * c.grain.radius));

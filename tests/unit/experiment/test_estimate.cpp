@@ -28,7 +28,7 @@ TEST_CASE("the estimate counts the steps of every path") {
   c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::mpm};
   c.sample.smallest_diameter = c.sample.largest_diameter = 2e-3;
   c.sample.packing_fraction = 0.5;
-  c.mpm.time_step = 1e-6;
+  c.time.step = 1e-6;
   const double side = std::sqrt(c.sample.grains * 3.14159265 * 1e-6 / 0.5);
   const double compaction = side * (1 - std::exp(-0.35)) / 0.2 / 1e-6;
   CHECK(estimate(c).steps == doctest::Approx(compaction).epsilon(1e-3));
@@ -50,7 +50,7 @@ TEST_CASE("half the time step doubles the steps and the hours") {
 TEST_CASE("a batch of eight grains costs what one grain costs") {
   Case c;
   c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::mpm};
-  c.mpm.time_step = 1e-6;
+  c.time.step = 1e-6;
   c.sample.grains = 1;
   const Estimate one = estimate(c);
   c.sample.grains = 8;
@@ -75,9 +75,9 @@ TEST_CASE("the hours are within a factor of two of what the paper's runs took") 
   c.experiment.model = GrainModel::mpm;
   c.loading.max_packing_fraction = 0.985;
   c.mpm.cells = 16;
-  c.mpm.time_step = 5e-6;
+  c.time.step = 5e-6;
   CHECK(std::abs(std::log2(3600 * estimate(c).hours / 116)) < 1);
-  c.mpm.time_step = 0;
+  c.time.step = 0;
   c.mpm.integrator = Integrator::symplectic_euler;
   CHECK(std::abs(std::log2(3600 * estimate(c).hours / 189)) < 1);
 }

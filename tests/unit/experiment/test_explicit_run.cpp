@@ -71,17 +71,17 @@ TEST_CASE("an explicit time step up to the longest stable one runs, a longer one
   Case c = squeezed_grain(4, 2);
   const double longest = longest_time_step(c);
   CHECK(longest > create_simulation(c)->time());
-  c.mpm.time_step = longest;
+  c.time.step = longest;
   CHECK_NOTHROW(create_simulation(c)->step());
-  c.mpm.time_step = 1.001 * longest;
+  c.time.step = 1.001 * longest;
   CHECK_THROWS_WITH_AS(create_simulation(c), doctest::Contains("or 0 for the default"), UsageError);
   c.experiment.loading = LoadingPath::isotropic;  // the smallest grain that the case allows
-  c.mpm.time_step = 1.001 * longest * c.sample.smallest_diameter / 2 / c.grain.radius;
+  c.time.step = 1.001 * longest * c.sample.smallest_diameter / 2 / c.grain.radius;
   CHECK_THROWS_AS(check_time_step(c), UsageError);
-  c.mpm.time_step = 0.999 * longest * c.sample.smallest_diameter / 2 / c.grain.radius;
+  c.time.step = 0.999 * longest * c.sample.smallest_diameter / 2 / c.grain.radius;
   CHECK_NOTHROW(check_time_step(c));
   c.mpm.integrator = Integrator::backward_euler;
-  c.mpm.time_step = 1;
+  c.time.step = 1;
   CHECK_NOTHROW(check_time_step(c));
 }
 

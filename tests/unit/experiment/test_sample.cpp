@@ -50,8 +50,8 @@ TEST_CASE("the same seed gives the same sample bit for bit, another seed another
 
 TEST_CASE("a sample that cannot be is refused") {
   CHECK_THROWS_AS(sample_box({.grains = 0}), UsageError);
-  CHECK_THROWS_AS(sample_box({.smallest = 0}), UsageError);
-  CHECK_THROWS_AS(sample_box({.smallest = 3e-3, .largest = 2e-3}), UsageError);
+  CHECK_THROWS_AS(sample_box({.sizes = {.smallest = 0}}), UsageError);
+  CHECK_THROWS_AS(sample_box({.sizes = {.smallest = 3e-3, .largest = 2e-3}}), UsageError);
   CHECK_THROWS_AS(sample_box({.packing_fraction = 0.8}), UsageError);
   CHECK_THROWS_AS(sample_box({.packing_fraction = 0}), UsageError);
   CHECK_THROWS_AS(sample_box({.aspect = 0}), UsageError);
@@ -99,14 +99,15 @@ TEST_CASE(
                                         {10, 0.6900}}) {
     CAPTURE(grains);
     const double found = largest_packing_fraction(
-        {.grains = grains, .smallest = 2e-3, .largest = 2e-3, .packing_fraction = 0.79});
+        {.grains = grains, .sizes = {.smallest = 2e-3, .largest = 2e-3}, .packing_fraction = 0.79});
     CHECK(found <= densest / (1.005 * 1.005));
     CHECK(found > densest / (1.005 * 1.005) - 0.03);
   }
 }
 
 TEST_CASE("grains for which there are no places are refused with the fraction that they can have") {
-  const BoxSampleOptions options{.grains = 2, .smallest = 2e-3, .largest = 2e-3, .packing_fraction = 0.7};
+  const BoxSampleOptions options{
+      .grains = 2, .sizes = {.smallest = 2e-3, .largest = 2e-3}, .packing_fraction = 0.7};
   std::string message;
   try {
     sample_box(options);

@@ -7,9 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "softgrain/experiment/sample.hpp"
 #include "softgrain/io/case_file.hpp"
+#include "softgrain/io/case_forms.hpp"
 #include "softgrain/io/case_relations.hpp"
+#include "softgrain/io/case_schema.hpp"
 #include "softgrain/io/case_text.hpp"
+#include "softgrain/io/case_value.hpp"
 #include "softgrain/io/schema.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -47,6 +51,8 @@ Case unusual_case() {
   c.loading.unload_at = {0.1 * 3, 1.0 / 3};
   c.time.step = 0.7e-6;
   c.sample.seed = 9007199254740993;  // not a double
+  c.sample.diameters = {1e-3, 0.1 + 0.2};
+  c.sample.numbers = {1.0 / 3, 2};
   c.output.vtk = false;
   return c;
 }
@@ -60,16 +66,43 @@ TEST_CASE("the resolved case reads back bit for bit") {
 
 TEST_CASE("the commented case reads back bit for bit") {
   for (const Case& c : {Case{}, unusual_case()})
-    check_equal(parse_case(commented_case_text(c), "case.toml"), c);
+    check_equal(parse_case(commented_case_text(c, Keys::all), "case.toml"), c);
 }
 
 TEST_CASE("every template is a valid case") {
   for (const CaseTemplate& start : case_templates())
-    check_equal(parse_case(commented_case_text(start.content), start.name), start.content);
+    check_equal(parse_case(commented_case_text(start.content, Keys::that_act), start.name), start.content);
+}
+
+TEST_CASE("a resolved case with placed grains reads back bit for bit") {
+  Case c;
+  c.experiment.loading = LoadingPath::compaction;
+  c.sample.placed = {{{1e-3 / 3, 0.1 + 0.2}, 1e-3 / 3, -0.7}, {{0.01, 0.02}, 2e-3, 0}};
+  c = complete_sample(c);
+  check_equal(parse_case(resolved_case_text(c), "resolved.toml"), c);
+  CHECK(nlohmann::json::parse(case_json(c))["sample"]["placed"][1][2] == 2e-3);
+}
+
+TEST_CASE("a new case has only the keys that act in it, unless all are asked for") {
+  for (const CaseTemplate& start : case_templates()) {
+    CAPTURE(start.name);
+    const std::string some = commented_case_text(start.content, Keys::that_act);
+    const std::string all = commented_case_text(start.content, Keys::all);
+    CHECK(some.starts_with("#:schema ./case.schema.json\n"));
+    for (const Key& key : case_keys()) {
+      const std::string line = "\n" + key.short_name() + " = " + written_value(start.content, key) + "\n";
+      CHECK_MESSAGE(all.find(line) != std::string::npos, key.name);
+      if (key.acts.covers(start.content)) CHECK_MESSAGE(some.find(line) != std::string::npos, key.name);
+    }
+    CHECK(some.size() < all.size());
+    const bool bonded = start.content.experiment.model == GrainModel::bpm;
+    CHECK((some.find("\n[bpm]\n") != std::string::npos) == bonded);
+    CHECK((some.find("\n[mpm]\n") == std::string::npos) == bonded);
+  }
 }
 
 TEST_CASE("the commented case is written as people write it") {
-  const std::string text = commented_case_text(case_templates().front().content);
+  const std::string text = commented_case_text(case_templates().front().content, Keys::that_act);
   CHECK(text.find("radius = \"5 mm\"\n") != std::string::npos);
   CHECK(text.find("attraction = \"100 N/m\"\n") != std::string::npos);
   CHECK(text.find("unload_at = [0.1, 0.3]\n") != std::string::npos);
@@ -91,18 +124,26 @@ TEST_CASE("the JSON Schema knows every key of a case, and no other") {
   const auto schema = nlohmann::json::parse(case_json_schema());
   CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
   CHECK(schema["additionalProperties"] == false);
-  const auto resolved = nlohmann::json::parse(case_json(Case{}));
-  CHECK(resolved.size() == schema["properties"].size());
-  for (const auto& table : resolved.items()) {
-    const auto& described = schema["properties"][table.key()];
-    CHECK(described["additionalProperties"] == false);
-    CHECK(described["properties"].size() == table.value().size());
-    for (const auto& key : table.value().items())
-      CHECK_MESSAGE(described["properties"].contains(key.key()), key.key());
+  std::set<std::string> known;
+  for (const Key& key : case_keys()) known.insert(key.table() + "." + key.short_name());
+  for (const OldKey& old : old_keys()) known.insert(old.name);
+  for (const FormKey& form : form_keys())  // the first two parts of their names
+    known.insert(form.name.substr(0, form.name.find('.', form.name.find('.') + 1)));
+  std::set<std::string> described;
+  for (const auto& [name, table] : schema["properties"].items()) {
+    const auto& object = table["type"] == "array" ? table["items"] : table;
+    CHECK(object["additionalProperties"] == false);
+    for (const auto& [key, value] : object["properties"].items()) described.insert(name + "." + key);
   }
+  CHECK(described == known);
   const auto& relaxation = schema["properties"]["solver"]["properties"]["relaxation"];
   CHECK(relaxation["anyOf"][0]["exclusiveMaximum"] == 2);
   CHECK(schema["properties"]["bpm"]["properties"]["primaries"]["type"] == "integer");
+  CHECK(schema["properties"]["time"]["properties"]["step"]["anyOf"][2]["const"] == "auto");
+  const auto& kind = schema["properties"]["kind"]["items"]["properties"];
+  CHECK(kind["law"]["properties"]["young_modulus"]["anyOf"][0]["exclusiveMinimum"] == 0);
+  CHECK(kind["diameter"]["anyOf"][1]["properties"]["median"].contains("anyOf"));  // a length, or a table
+  CHECK(kind["shape"]["enum"] == nlohmann::json::array({"disk"}));
 }
 
 TEST_CASE("the committed reference page is what the program writes") {
