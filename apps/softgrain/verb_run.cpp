@@ -16,6 +16,7 @@
 #include "softgrain/io/case_text.hpp"
 #include "softgrain/io/report_page.hpp"
 #include "softgrain/io/resources.hpp"
+#include "softgrain/io/run_origin.hpp"
 #include "softgrain/io/run_recorder.hpp"
 #include "softgrain/io/units.hpp"
 #include "softgrain/io/verdict.hpp"
@@ -41,6 +42,7 @@ struct RunOptions {
 struct RunArguments {
   CaseArguments the_case;
   RunOptions options;
+  std::string from;  ///< "RUN" or "RUN@STEP"
   bool resume = false;
   bool force = false;
 };
@@ -93,11 +95,13 @@ RunRequest request_of(const RunOptions& options, bool resume) {
   return request;
 }
 
+/// from: the state to begin with, if any.
 void carry_out(const RunRequest& request, const RunDirectory& directory, const RunOptions& options,
-               const std::vector<std::string>& notes) {
+               const std::vector<std::string>& notes, const Checkpoint* from = nullptr) {
   SignalWatch signals;
   if (options.threads > 0) set_threads(options.threads);
   const auto simulation = create_simulation(request.the_case);
+  if (from != nullptr) simulation->begin_from(*from);
   RunOutcome outcome;
   {
     Progress progress(options.quiet ? ProgressStyle::none : options.progress);
@@ -161,6 +165,31 @@ void run_case(const RunArguments& arguments) {
   carry_out(request, directory, arguments.options, notes_of(reading));
 }
 
+/// "RUN_on" beside a run from which another begins.
+fs::path directory_beside(const fs::path& run) {
+  const fs::path root = run.lexically_normal();
+  const fs::path named = root.has_filename() ? root : root.parent_path();
+  return named.string() + "_on";
+}
+
+/// A new run from a state of another one, with that one's case and what `--set` changes of it.
+void run_from(const RunArguments& arguments) {
+  const OriginState origin = read_origin(arguments.from);
+  RunRequest request = request_of(arguments.options, false);
+  const CaseReading reading =
+      read_case_with_notes(origin.paths.case_file().string(), arguments.the_case.sets);
+  request.the_case = reading.the_case;
+  request.case_text = resolved_case_text(request.the_case);
+  request.origins = origin.origins;
+  check_case(request.the_case);
+  const RunPaths paths{arguments.options.directory.empty() ? directory_beside(origin.paths.root)
+                                                           : fs::path(arguments.options.directory)};
+  if (!arguments.force) require_resources(estimate(request.the_case), available_resources(paths.root));
+  const RunDirectory directory(paths.root, arguments.force ? RunDirectory::IfNotEmpty::keep
+                                                           : RunDirectory::IfNotEmpty::refuse);
+  carry_out(request, directory, arguments.options, notes_of(reading), &origin.snapshot.checkpoint);
+}
+
 void resume_run(const RunOptions& options) {
   const RunPaths paths{options.directory};
   require(is_begun(paths), "{} is not a run's directory: it has neither run.json nor snapshots",
@@ -182,11 +211,17 @@ void add_run_verb(CLI::App& app) {
   auto* run = app.add_subcommand("run", "Carry out a case; its results go to a directory");
   auto arguments = std::make_shared<RunArguments>();
   add_case_arguments(*run, arguments->the_case);
+  CLI::Option* the_case = run->get_option("CASE")->required(false);
   run->add_option("-o,--output", arguments->options.directory,
                   "directory (default: CASE without .toml, with _run)")
       ->type_name("DIR");
   auto* resume = run->add_flag("--resume", arguments->resume,
                                "go on from the newest intact snapshot, if there is one; also to a later end");
+  run->add_option("--from", arguments->from,
+                  "begin from the last state of a run, or RUN@STEP, with its case and what --set changes")
+      ->type_name("RUN")
+      ->excludes(the_case)
+      ->excludes(resume);
   run->add_flag("--force", arguments->force,
                 "replace an earlier run's results; begin even where memory or disk seem too small")
       ->excludes(resume);
@@ -197,6 +232,8 @@ void add_run_verb(CLI::App& app) {
       "  softgrain run case.toml --set contact.wall_friction=0.3 -o friction -j 4\n"
       "  softgrain run case.toml -o out --resume --set loading.max_strain=0.5      a finished run goes "
       "further\n"
+      "  softgrain run --from out@4000 --set contact.friction=0.3 -o rough         other friction from step "
+      "4000\n"
       "  softgrain run case.toml -o out --resume --stop-after \"23 h\"    in a queue: exit code 75 asks to "
       "come again\n"
       "\nCtrl-C: finish the step, write a snapshot, exit 130. SIGTERM, SIGUSR2, SIGHUP: the same, exit 75. "
@@ -205,7 +242,11 @@ void add_run_verb(CLI::App& app) {
       "\nExit code 5: the run came to its end, but its verdict says not to trust it, or that it did not "
       "reach "
       "all\nthat the case asks.");
-  run->callback([arguments] { run_case(*arguments); });
+  run->callback([arguments] {
+    require(!arguments->from.empty() || !arguments->the_case.path.empty(),
+            "run needs a case, or --from RUN: softgrain run CASE");
+    arguments->from.empty() ? run_case(*arguments) : run_from(*arguments);
+  });
 
   auto* again = app.add_subcommand("resume", "Go on with a run that was stopped or killed");
   auto options = std::make_shared<RunOptions>();

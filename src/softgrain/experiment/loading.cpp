@@ -29,12 +29,28 @@ std::int64_t whole_steps(double time, double dt) {
 
 Loading::Loading(std::vector<Stage> stages, StrainMeasure measure, LoadingEnds ends, double height)
     : stages_(std::move(stages)), measure_(measure), ends_(ends), height_(height) {
-  double travel = 0;
-  for (const Stage& stage : stages_) {
+  plan_from(0);
+}
+
+void Loading::plan_from(double travel) {
+  start_ = travel;
+  ways_.clear();
+  for (Stage& stage : stages_) {
     const double to = stage.strain ? measure_.travel(*stage.strain) : travel;
+    if (stage.strain) stage.speed = std::copysign(stage.speed, to - travel);
     ways_.push_back({travel, to});
     travel = to;
   }
+}
+
+void Loading::begin_at(StateVisitor& visit, const Box<2>& box) {
+  visit_start(visit);
+  plan_from(height_ - box.height());
+}
+
+void Loading::visit_start(StateVisitor& visit) {
+  visit({"height_start", "m", Owner::run, Role::state, "of the box where strains count from"}, height_);
+  if (measure_.kind == StrainMeasure::Kind::of_box) measure_.length = height_;
 }
 
 void Loading::follow(WallMotion motion) {
@@ -173,6 +189,9 @@ LoadingOutcome Loading::outcome() const {
 }
 
 void Loading::visit(StateVisitor& visit) {
+  visit_start(visit);
+  visit({"travel_start", "m", Owner::run, Role::state, "of the walls where the first stage began"}, start_);
+  if (visit.reads() && !motion_.velocity) plan_from(start_);
   const auto number = [&](std::string_view name, std::string_view unit, std::string_view text, auto& value) {
     visit({name, unit, Owner::run, Role::state, text}, value);
   };

@@ -31,6 +31,9 @@ class Loading {
   /// height: of the box at the start [m].
   Loading(std::vector<Stage> stages, StrainMeasure measure, LoadingEnds ends, double height);
 
+  /// Goes through its stages from the present state of the box, which a loading of another run left: strains
+  /// count from where that run began. `visit` reads its arrays.
+  void begin_at(StateVisitor& visit, const Box<2>& box);
   /// The walls leave the stages for this motion, with the shares of the first stage. Raises UsageError for a
   /// duration that is not positive.
   void follow(WallMotion motion);
@@ -84,13 +87,16 @@ class Loading {
   void keep_stress(double stress, double dt);
   void next_stage(double time);
   std::int64_t steps_of(std::size_t stage, double dt) const;
+  void visit_start(StateVisitor& visit);
+  void plan_from(double travel);
 
   std::vector<Stage> stages_;
   std::vector<Way> ways_;
   StrainMeasure measure_;
   LoadingEnds ends_;
   WallMotion motion_;
-  double height_ = 0;  // at the start [m]
+  double height_ = 0;  // where strains count from [m]
+  double start_ = 0;   // travel at the start of the first stage [m]
 
   std::size_t stage_ = 0;    // of the coming step
   double stage_start_ = 0;   // [s]

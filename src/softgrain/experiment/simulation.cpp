@@ -184,7 +184,19 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   StateReader reader(checkpoint.arrays);
   visit(reader);
   model_->go_on(box_);
+  steps_planned_ = loading_.steps_planned(dt_);
   step_ = checkpoint.step;
+}
+
+void Simulation::begin_from(const Checkpoint& checkpoint) {
+  StateReader reader(checkpoint.arrays);
+  model_->visit(reader);
+  box_.visit(reader);
+  model_->go_on(box_);
+  loading_.begin_at(reader, box_);
+  if (box_.closed()) loading_.body = model_->wall_body(box_, dt_);
+  steps_planned_ = loading_.steps_planned(dt_);
+  begin_row();
 }
 
 }  // namespace softgrain

@@ -66,6 +66,10 @@ class Simulation final {
   Checkpoint checkpoint() const;
   /// Raises IoError for a checkpoint that is not of this case.
   void restore(const Checkpoint& checkpoint);
+  /// Before the first step: takes grains and walls from another run's checkpoint, with their energies and what
+  /// was spent so far. Steps and time begin anew, and so does the loading; its strains count from where the
+  /// other run began. Raises IoError for a checkpoint of other grains.
+  void begin_from(const Checkpoint& checkpoint);
   void visit(StateVisitor& visit);
 
  private:

@@ -95,9 +95,22 @@ double cpu_seconds() {
   return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
+namespace {
+
+Json json_of(const RunOrigin& origin) {
+  return {{"directory", origin.directory},
+          {"snapshot", origin.snapshot},
+          {"content_hash", origin.content_hash},
+          {"command", origin.command}};
+}
+
+}  // namespace
+
 std::string encode_run_record(const RunRecord& record) {
   const RunReport& report = record.report;
   const Verdict verdict = verdict_of(report, record.path);
+  Json origins = Json::array();
+  for (const RunOrigin& origin : record.origins) origins.push_back(json_of(origin));
   const Json json = {
       {"format", format_name},
       {"version", format_version},
@@ -107,6 +120,7 @@ std::string encode_run_record(const RunRecord& record) {
       {"doubts", verdict.doubts},
       {"path_completed", record.state == "done" && record.path.completed},
       {"command", record.command},
+      {"begun_from", origins},
       {"started", record.started},
       {"updated", utc_now()},
       {"resumes", record.resumes},
@@ -139,6 +153,9 @@ RunRecord read_run_record(const std::filesystem::path& path) {
     if (json.at("format") != format_name) throw IoError("it has another format");
     RunRecord record;
     record.command = json.at("command").get<std::vector<std::string>>();
+    for (const Json& origin : json.value("begun_from", Json::array()))
+      record.origins.push_back({origin.at("directory"), origin.at("snapshot"), origin.at("content_hash"),
+                                origin.at("command").get<std::vector<std::string>>()});
     record.started = json.at("started");
     record.resumes = json.at("resumes");
     record.state = json.at("state");

@@ -8,6 +8,14 @@
 
 namespace softgrain {
 
+/// The state of another run that a run was begun from.
+struct RunOrigin {
+  std::string directory;     ///< of that run
+  std::string snapshot;      ///< "s000123.h5"
+  std::string content_hash;  ///< of that snapshot
+  std::vector<std::string> command;  ///< that began that run
+};
+
 /// What run.json tells about a run: where it came from, how far it is, and what it reached.
 struct RunRecord {
   std::string state = "running";     ///< running, done, stopped (can be resumed), failed
@@ -22,6 +30,7 @@ struct RunRecord {
   double progress = 0;      ///< [0, 1]
   double wall_seconds = 0;  ///< of all resumed parts together
   double cpu_seconds = 0;
+  std::vector<RunOrigin> origins;  ///< that it was begun from, the newest first; none: from its case
   RunReport report;
   LoadingOutcome path;  ///< of a run that is done
 };

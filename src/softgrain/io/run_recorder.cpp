@@ -62,6 +62,7 @@ StepMeans means_of(const StepSums& sums, double wall_seconds) {
 RunRecorder::RunRecorder(const RunPaths& paths, RunRequest request, Progress& progress, SignalWatch& signals)
     : paths_(paths), request_(std::move(request)), progress_(progress), signals_(signals) {
   record_.command = request_.command;
+  record_.origins = request_.origins;
   record_.started = utc_now();
   record_.seed = request_.the_case.sample.seed;
   record_.report.energy.scale = least_energy(request_.the_case);
@@ -137,6 +138,7 @@ RunReport RunRecorder::resume(Simulation& simulation) {
   if (fs::exists(paths_.run_file())) {
     const RunRecord before = read_run_record(paths_.run_file());
     record_.command = before.command;
+    record_.origins = before.origins;
     record_.started = before.started;
     record_.resumes = before.resumes + 1;
   }

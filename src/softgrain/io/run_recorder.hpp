@@ -22,6 +22,7 @@ struct RunRequest {
   Case the_case;
   std::string case_text;             ///< the resolved case, as stored
   std::vector<std::string> command;  ///< the command line
+  std::vector<RunOrigin> origins;    ///< that the simulation was begun from, the newest first
   bool resume = false;  ///< from the newest intact snapshot; from the beginning when there is none
   double stop_after = std::numeric_limits<double>::infinity();  ///< wall time [s]
   bool verbose = false;                                         ///< the log goes to stderr too

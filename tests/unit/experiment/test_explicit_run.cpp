@@ -74,7 +74,7 @@ TEST_CASE("an explicit time step up to the longest stable one runs, a longer one
   c.time.step = longest;
   CHECK_NOTHROW(create_simulation(c)->step());
   c.time.step = 1.001 * longest;
-  CHECK_THROWS_WITH_AS(create_simulation(c), doctest::Contains("or 0 for the default"), UsageError);
+  CHECK_THROWS_WITH_AS(create_simulation(c), doctest::Contains("or \"auto\""), UsageError);
   c.experiment.loading = LoadingPath::isotropic;  // the smallest grain that the case allows
   c.time.step = 1.001 * longest * c.sample.smallest_diameter / 2 / c.grain.radius;
   CHECK_THROWS_AS(check_time_step(c), UsageError);
