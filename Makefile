@@ -27,11 +27,13 @@ check: ## format, layers, self-contained headers, links of the documentation, cl
 	tools/check_layers
 	tools/check_headers
 	tools/check_viewer
+	tools/check_docs
 	tools/build_site
 	tools/check_tidy
 
 docs: ## the documentation as a site, build/site/index.html, with every link checked
 	@tools/install_dependencies.sh --with docs
+	tools/check_docs
 	tools/build_site
 
 torture: ## long forms of the reliability tests, fuzzers, sanitizers, builds compared (hours)
