@@ -33,6 +33,7 @@ check: ## format, layers, self-contained headers, the library for the browser, l
 
 docs: ## the documentation as a site, build/site/index.html, with every link checked
 	@tools/install_dependencies.sh --with docs
+	tools/check_docs
 	tools/build_site
 
 torture: ## long forms of the reliability tests, fuzzers, sanitizers, builds compared, 64-bit ARM (hours)

@@ -61,7 +61,7 @@ class Reading(unittest.TestCase):
     def test_what_is_printed_of_a_run_and_of_a_snapshot_fits_on_a_line(self):
         run = softgrain.open(synthetic.write_run(self.folder))
         self.assertIn("225 rows, 7 snapshots", repr(run))
-        self.assertIn("<Snapshot of step 22400, 0.224 s; particles: position, pressure, radius (91); contacts:", repr(run[-1]))
+        self.assertIn("<Snapshot of step 22400, 0.224 s; particles: position, pressure, radius (109); contacts:", repr(run[-1]))
         self.assertLess(len(repr(run[-1])), 200)
 
     def test_the_times_of_snapshots_are_those_in_them(self):

@@ -68,10 +68,10 @@ class Plans(unittest.TestCase):
 
     def test_reals_are_counted_from_first_to_last_by_a_step_without_rounding(self):
         values = lambda word: next(iter(self.plan(word).varied.values()))  # noqa: E731
-        self.assertEqual(values("contact.friction=0:0.5:0.1"), ["0.0", "0.1", "0.2", "0.3", "0.4", "0.5"])
+        self.assertEqual(values("contact.friction=0:0.5:0.1"), ["0", "0.1", "0.2", "0.3", "0.4", "0.5"])
         self.assertEqual(values("contact.friction=0.1:0.34:0.1"), ["0.1", "0.2", "0.3"])
         self.assertEqual(values("mpm.young_modulus=1:5:2 MPa,20 MPa"), ["1 MPa", "3 MPa", "5 MPa", "20 MPa"])
-        self.assertEqual(values("contact.friction=0.5:0:-0.25"), ["0.5", "0.25", "0.00"])
+        self.assertEqual(values("contact.friction=0.5:0:-0.25"), ["0.5", "0.25", "0"])
         for word in ("0:0.1", "0:0.5:0", "0:0.5:-0.1", "0:x:1", "0:1e9:1"):
             with self.assertRaisesRegex(PlanError, "FIRST:LAST:STEP"):
                 self.plan(f"contact.friction={word}")

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/subprocess.hpp"
@@ -97,6 +98,24 @@ TEST_CASE("a wrong value on the command line is answered in a line that helps") 
     CHECK(result.err.size() < 400);
   }
   CHECK_FALSE(fs::exists(folder.path() / "=x"));
+}
+
+TEST_CASE("what people write who do not know TOML is answered with how it is written") {
+  const softgrain::test::TemporaryDirectory folder;
+  const std::pair<std::string, std::string> slips[] = {
+      {"[experiment]\nmodel = mpm\n", "words and quantities stand in quotation marks: model = \"mpm\""},
+      {"[grain]\nradius = 5 mm\n", "words and quantities stand in quotation marks: radius = \"5 mm\""},
+      {"[experiment]\nmodel = \u201cmpm\u201d\n", "are not those of a keyboard"},
+      {"x", "expected 'key = value', got 'x'"},
+      {"[sample]\nseed =\n", "a value is missing behind 'seed ='"},
+      {"[sample]\nseed = 1\nseed = 2\n", "given twice"},
+  };
+  for (const auto& [text, message] : slips) {
+    const std::string file = folder.file("case.toml", text);
+    const auto result = softgrain_program({"check", file});
+    CHECK(result.exit_code == 2);
+    CHECK_MESSAGE(mentions(result.err, message), result.err);
+  }
 }
 
 TEST_CASE("the directory that new made is a case, and so is a file's name without .toml") {

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,56 @@ TEST_CASE("bash completes verbs, the options of a verb and the keys of a case") 
   CHECK(bash_offers("run case.toml --set contact.fr") == "contact.friction=\n");
   CHECK(bash_offers("sweep case.toml --vary sample.s") == "sample.seed=\nsample.smallest_diameter=\n");
   CHECK(bash_offers("run ca") == "\n");  // then bash offers files
+}
+
+TEST_CASE("bash completes values where they can be listed, also behind =, at which it parts words") {
+  CHECK(bash_offers("new x --template compaction-") == "compaction-bpm\ncompaction-mpm\n");
+  CHECK(bash_offers("export run --to con") == "contacts\n");
+  CHECK(bash_offers("plot run --format = p") == "png\npdf\n");
+  CHECK(bash_offers("run case.toml --set experiment.model = m") == "mpm\n");
+  CHECK(bash_offers("run case.toml --set experiment.model =") == "bpm\nmpm\n");
+  CHECK(bash_offers("run case.toml --set output.vtk = t") == "true\n");
+  CHECK(bash_offers("sweep case.toml --column z_no") == "z_no_rattlers\n");
+  CHECK(bash_offers("reproduce fig3 --scale q") == "quick\n");
+  CHECK(bash_offers("completion fi") == "fish\n");
+}
+
+TEST_CASE("the columns that are offered are columns of a packing or of a grain") {
+  const softgrain::test::TemporaryDirectory folder;
+  std::string header;
+  for (const std::string loading : {"compaction", "diametral"})
+    for (const std::string model : {"mpm", "bpm"}) {
+      const std::string out = (folder.path() / (loading + model)).string();
+      softgrain::test::run({SOFTGRAIN_PROGRAM,
+                            "run",
+                            "/dev/null",
+                            "-q",
+                            "-o",
+                            out,
+                            "--set",
+                            "experiment.loading=" + loading,
+                            "--set",
+                            "experiment.model=" + model,
+                            "--set",
+                            "sample.grains=4",
+                            "--set",
+                            "mpm.cells=2",
+                            "--set",
+                            "bpm.primaries=20",
+                            "--set",
+                            "sample.packing_fraction=0.4",
+                            "--stop-after",
+                            "1 ms"});
+      const std::string series = softgrain::test::read_text(out + "/series.csv");
+      header += "," + series.substr(0, series.find('\n'));
+    }
+  std::istringstream offered(bash_offers("sweep case.toml --column \"\""));
+  int columns = 0;
+  for (std::string name; offered >> name; ++columns)
+    CHECK_MESSAGE((header.find("," + name + ",") != std::string::npos ||
+                   header.find("," + name + "[") != std::string::npos),
+                  name);
+  CHECK(columns > 20);
 }
 
 TEST_CASE("every key of a case is completed in every shell") {

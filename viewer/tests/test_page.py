@@ -106,6 +106,7 @@ class Page(unittest.TestCase):
 
     def test_slider_moves_the_picture_and_the_dots(self):
         self.open()
+        self.browser.press("Home", 36)
         before, dot = self.pixels("first", STAGE), self.browser.run(DOT.format(0) + ".x")
         slider = {side: self.browser.run(f"document.querySelector('.slider').getBoundingClientRect().{side}")
                   for side in ("x", "y", "width", "height")}
@@ -134,6 +135,7 @@ class Page(unittest.TestCase):
 
     def test_keyboard_steps_and_plays(self):
         self.open()
+        self.browser.press("Home", 36)
         for key, code, frame in (("ArrowRight", 39, 1), ("ArrowRight", 39, 2), ("ArrowLeft", 37, 1), ("End", 35, 10),
                                  ("ArrowRight", 39, 10), ("Home", 36, 0)):
             self.browser.press(key, code)
@@ -199,6 +201,63 @@ class Page(unittest.TestCase):
         red = lambda p: ((p[:, :, 0] > 180) & (p[:, :, 1] < 90) & (p[:, :, 2] < 110)).sum()  # noqa: E731
         self.assertGreater(red(pictures[-1]), red(self.pixels("plain", STAGE)) + 500)
 
+    def test_opens_where_the_packing_is_most_compressed(self):
+        self.open()
+        self.assertEqual(self.frame(), 10)
+        self.assertIn("snapshot 11 of 11", self.browser.run("document.querySelector('.now').textContent"))
+
+    def test_range_of_the_colours_is_that_of_softgrain_plot_and_can_be_typed(self):
+        """Two programs, one rule: the page's legend against `softgrain.colours` over the snapshots."""
+        sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
+        import softgrain
+        from softgrain import colours, picture
+
+        self.open()
+        self.browser.run("(s => { s.value = 'pressure'; s.dispatchEvent(new Event('change')); })"
+                         "(document.querySelector('.colouring'))")
+        self.settle()
+        ends = "[...document.querySelectorAll('.ticks input')].map(i => i.value.replace('−', '-'))"
+        unit = self.browser.run("document.querySelector('.legend span').textContent").split("[")[1].rstrip("]")
+        low, high = (float(end) * {"Pa": 1, "kPa": 1e3, "MPa": 1e6}[unit] for end in self.browser.run(ends))
+        run = softgrain.open(self.folder / "compaction-mpm/run")
+        snapshots = [run[i] for i in colours.sampled(len(run)) if picture.has_forces(run[i])]
+        found = colours.range_of(np.concatenate([picture.surface(s, s.particles["pressure"]).values for s in snapshots]))
+        reach = max(-found.low, found.high)
+        self.assertAlmostEqual(low / reach, found.low / reach, delta=0.01)
+        self.assertAlmostEqual(high / reach, found.high / reach, delta=0.01)
+        before = self.pixels("untyped", STAGE)
+        self.browser.run("(i => { i.value = '1'; i.dispatchEvent(new Event('change')); })"
+                         "(document.querySelector('.ticks input:last-child'))")
+        self.assertEqual(self.browser.run(ends)[1], "1")
+        self.assertGreater((np.abs(self.pixels("typed", STAGE) - before).max(axis=2) > 20).mean(), 0.05)
+
+    def test_every_field_of_the_points_is_offered(self):
+        self.open()
+        names = "[...document.querySelector('.colouring').options].map(o => o.value)"
+        self.assertLessEqual({"pressure", "J", "stress", "area", "contacts", "grain"}, set(self.browser.run(names)))
+        self.open("diametral-bpm/run/report.html")
+        self.assertLessEqual({"pressure", "coordination", "velocity"}, set(self.browser.run(names)))
+
+    def test_the_picture_is_saved_with_its_caption_and_scale(self):
+        self.open()
+        self.settle()
+        self.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(self.folder / "saved"))
+        self.browser.run("document.querySelector('.save').click()")
+        saved = self.folder / "saved"
+        self.browser.until(lambda: list(saved.glob("*.png")))
+        picture = 255 * imread(next(saved.glob("*.png")))[:, :, :3]
+        if PICTURES:
+            shutil.copy(next(saved.glob("*.png")), PICTURES / "saved.png")
+        self.assertEqual(picture.shape[1], 2000)
+        middle = picture[picture.shape[0] // 3:picture.shape[0] // 2, 500:1500]
+        self.assertGreater(middle.std(axis=(0, 1)).max(), 20)  # the packing, not an empty canvas
+        self.assertGreater((np.ptp(picture[-100:, 1400:], axis=2) > 60).mean(), 0.05)  # the scale at the right
+
+    def test_summary_is_that_of_the_case(self):
+        self.open()
+        self.assertEqual(self.browser.run("document.querySelector('.summary').textContent"),
+                         "compaction · mpm · 16 grains · friction 0")
+
     def test_phone(self):
         self.browser.resize(390, 844, phone=True)
         self.open()
@@ -230,6 +289,7 @@ class Page(unittest.TestCase):
         names = "[...document.querySelectorAll('.runs button')].map(b => b.textContent)"
         self.assertEqual(self.browser.run(names), ["soft", "bonded"])
         before = self.pixels("soft", STAGE)
+        self.assertEqual(self.browser.run("document.title"), "soft, bonded")
         self.browser.run("document.querySelectorAll('.runs button')[1].click()")
         self.assertIn("100 primaries", self.browser.run("document.querySelector('.summary').textContent"))
         self.assertGreater((np.abs(self.pixels("bonded")[:before.shape[0], :before.shape[1]] - before) > 40).mean(), 0.01)

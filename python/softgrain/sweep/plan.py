@@ -119,7 +119,7 @@ def _steps(key, part):
     if not 0 <= count < LONGEST_RANGE:
         raise PlanError(f"--vary {key}: '{part}' is no FIRST:LAST:STEP, as in 0:0.5:0.1 or 1:5:2 MPa")
     values = (first + number * step for number in range(count + 1))
-    return [f"{value:f} {unit}".strip() for value in values]
+    return [f"{value.normalize():f} {unit}".strip() for value in values]
 
 
 def _short(name):
