@@ -28,6 +28,7 @@ check: ## format, layers, self-contained headers, the library for the browser, l
 	tools/check_headers
 	tools/check_viewer
 	tools/check_wasm
+	tools/check_docs
 	tools/build_site
 	tools/check_tidy
 

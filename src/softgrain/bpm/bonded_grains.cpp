@@ -11,6 +11,7 @@
 #include "softgrain/geometry/support.hpp"
 #include "softgrain/observe/clusters.hpp"
 #include "softgrain/observe/outlines.hpp"
+#include "softgrain/rigid/contact_state.hpp"
 #include "softgrain/rigid/step_problem.hpp"
 
 namespace softgrain {
@@ -305,8 +306,7 @@ void BondedGrains::visit(StateVisitor& visit) {
                       std::move(reference.wall_point));
     dynamics_.rebuild_contacts();
   }
-  visit({"contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t), in the order of the lists"},
-        dynamics_.contacts.impulse);
+  visit_impulses(dynamics_.contacts, visit);
 }
 
 void BondedGrains::go_on(const Box<2>& box) {

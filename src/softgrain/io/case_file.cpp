@@ -57,7 +57,9 @@ class CaseReader {
     return names;
   }
 
-  static bool is_derived(const Key& key) {
+  bool is_derived(const Key& key) const {
+    const Case::Sample& sample = draft_.the_case.sample;
+    if (sample.placed.empty() && sample.sizes != SizeLaw::list) return false;
     return key.name == "sample.grains" || key.name == "sample.packing_fraction" ||
            key.name == "sample.aspect" || key.name == "sample.smallest_diameter" ||
            key.name == "sample.largest_diameter";

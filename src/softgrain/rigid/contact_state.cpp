@@ -1,0 +1,48 @@
+#include "softgrain/rigid/contact_state.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "softgrain/core/error.hpp"
+
+namespace softgrain {
+namespace {
+
+std::pair<std::int64_t, std::int64_t> pair_of(const RigidContacts<2>& contacts, int c) {
+  return {contacts.body_a[c], contacts.body_b[c]};
+}
+
+}  // namespace
+
+void visit_impulses(RigidContacts<2>& contacts, StateVisitor& visit) {
+  std::vector<std::int64_t> pairs;
+  std::vector<Vec<2>> impulse;
+  for (int c = 0; c < contacts.size(); ++c) {
+    if (contacts.impulse[c] == Vec<2>{}) continue;
+    pairs.insert(pairs.end(), {contacts.body_a[c], contacts.body_b[c]});
+    impulse.push_back(contacts.impulse[c]);
+  }
+  visit.list({"contact_pair", "", Owner::contact, Role::start, "primaries, or a wall counted on from them"},
+             pairs, 2);
+  visit.list({"contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t)"}, impulse);
+  if (!visit.reads()) return;
+  if (pairs.size() != 2 * impulse.size())
+    throw IoError("the snapshot's arrays of contacts have different lengths");
+  std::vector<int> sorted(contacts.size());
+  std::iota(sorted.begin(), sorted.end(), 0);
+  const auto by_pair = [&](int c) { return pair_of(contacts, c); };
+  std::ranges::sort(sorted, {}, by_pair);
+  std::ranges::fill(contacts.impulse, Vec<2>{});
+  for (std::size_t k = 0; k < impulse.size(); ++k) {
+    const std::pair wanted(pairs[2 * k], pairs[2 * k + 1]);
+    const auto found = std::ranges::lower_bound(sorted, wanted, {}, by_pair);
+    if (found == sorted.end() || by_pair(*found) != wanted)
+      throw IoError(fmt::format("the snapshot's array 'contact_pair' holds {} and {}, which do not touch here",
+                                wanted.first, wanted.second));
+    contacts.impulse[*found] = impulse[k];
+  }
+}
+
+}  // namespace softgrain
