@@ -185,8 +185,8 @@ void run_from(const RunArguments& arguments) {
   const RunPaths paths{arguments.options.directory.empty() ? directory_beside(origin.paths.root)
                                                            : fs::path(arguments.options.directory)};
   if (!arguments.force) require_resources(estimate(request.the_case), available_resources(paths.root));
-  const RunDirectory directory(paths.root, arguments.force ? RunDirectory::IfNotEmpty::keep
-                                                           : RunDirectory::IfNotEmpty::refuse);
+  const RunDirectory directory(
+      paths.root, arguments.force ? RunDirectory::IfNotEmpty::keep : RunDirectory::IfNotEmpty::refuse);
   carry_out(request, directory, arguments.options, notes_of(reading), &origin.snapshot.checkpoint);
 }
 

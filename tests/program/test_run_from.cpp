@@ -24,11 +24,12 @@ struct Workshop {
   }
   /// Compacts a few grains to a strain of 0.2.
   void compact(const std::string& model) const {
-    folder.file("case.toml", "[experiment]\nmodel = \"" + model +
-                                 "\"\nloading = \"compaction\"\n[sample]\ngrains = 5\npacking_fraction = 0.6\n"
-                                 "[bpm]\nprimaries = 20\n[mpm]\ncells = 3\n[loading]\nmax_strain = 0.2\n"
-                                 "unload_at = []\nwall_velocity = \"2 m/s\"\n"
-                                 "[output]\nsamples = 4\nsnapshots = 4\nreport = false\nvtk = false\n");
+    folder.file("case.toml",
+                "[experiment]\nmodel = \"" + model +
+                    "\"\nloading = \"compaction\"\n[sample]\ngrains = 5\npacking_fraction = 0.6\n"
+                    "[bpm]\nprimaries = 20\n[mpm]\ncells = 3\n[loading]\nmax_strain = 0.2\n"
+                    "unload_at = []\nwall_velocity = \"2 m/s\"\n"
+                    "[output]\nsamples = 4\nsnapshots = 4\nreport = false\nvtk = false\n");
     const auto made = program({"run", "case.toml", "-q", "-o", "first"});
     REQUIRE_MESSAGE(made.exit_code == 0, made.err);
   }
@@ -75,8 +76,9 @@ TEST_CASE("a run begins from a state of another: strains, stress and energies go
 TEST_CASE("a run that began from another lets go, is resumed with the same bits, and knows all before it") {
   const Workshop workshop;
   workshop.compact("mpm");
-  const Words back{"run",   "--from", "first", "--set", "loading.max_strain=0.18",
-                   "--set", "output.snapshots=3", "-q", "-o"};
+  const Words back{
+      "run", "--from", "first", "--set", "loading.max_strain=0.18", "--set", "output.snapshots=3",
+      "-q",  "-o"};
   const auto into = [&](const std::string& name, Words more) {
     Words words = back;
     words.push_back(name);
@@ -107,7 +109,8 @@ TEST_CASE("a state that is not there, or is of other grains, is refused and leav
         std::string::npos);
   const auto none = workshop.program({"run", "--from", "nowhere", "-q", "-o", "second"});
   CHECK(none.exit_code == 2);
-  const auto other = workshop.program({"run", "--from", "first", "--set", "mpm.cells=4", "-q", "-o", "second"});
+  const auto other =
+      workshop.program({"run", "--from", "first", "--set", "mpm.cells=4", "-q", "-o", "second"});
   CHECK(other.exit_code == 4);
   CHECK(other.err.find("no array 'position'") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(workshop.folder.path() / "second"));

@@ -30,7 +30,8 @@ int for_each_snapshot(const std::string& model, const Work& work) {
 
 }  // namespace
 
-TEST_CASE("snapshots of a version with other arrays are refused, with the remedy, and can still be looked at") {
+TEST_CASE(
+    "snapshots of a version with other arrays are refused, with the remedy, and can still be looked at") {
   const auto check = [](const softgrain::Snapshot& snapshot, softgrain::Simulation& simulation) {
     std::string message;
     try {

@@ -40,14 +40,14 @@ inline Simulation at_rest(std::unique_ptr<Model> model, int steps, double dt, in
   return {std::move(model), box, Loading(stages, {}, {}, 1), dt};
 }
 
-/// A ball that bounces on a floor, with everything that makes resuming hard: a mean since the last row, in the
-/// column width, a force that depends on the step before, and irrational numbers. Its state is exact.
+/// A ball that bounces on a floor, with everything that makes resuming hard: a mean since the last row, in
+/// the column width, a force that depends on the step before, and irrational numbers. Its state is exact.
 struct BouncingBall {
   int last_step = 400;
-  int turns_at = 0;                   ///< step after which the load turns; 0: none
-  int breaks_at = -1;                 ///< step that raises NumericalError
-  int signals_at = -1, signal = 0;    ///< before this step the process signals itself
-  useconds_t pause = 0;               ///< a step takes at least this long [us]
+  int turns_at = 0;                 ///< step after which the load turns; 0: none
+  int breaks_at = -1;               ///< step that raises NumericalError
+  int signals_at = -1, signal = 0;  ///< before this step the process signals itself
+  useconds_t pause = 0;             ///< a step takes at least this long [us]
 
   Simulation simulation() const;
 };

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "support/gravity.hpp"
 #include "softgrain/bpm/aggregate.hpp"
+#include "support/gravity.hpp"
 #include "support/simulations.hpp"
 
 using namespace softgrain;

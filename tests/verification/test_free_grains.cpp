@@ -5,7 +5,6 @@
 #include <string>
 #include "support/simulations.hpp"
 
-
 using namespace softgrain;
 
 namespace {

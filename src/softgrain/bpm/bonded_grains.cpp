@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "softgrain/bpm/primary_pressures.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/geometry/polygon.hpp"
 #include "softgrain/geometry/support.hpp"
 #include "softgrain/observe/clusters.hpp"
-#include "softgrain/observe/outlines.hpp"
 #include "softgrain/rigid/contact_state.hpp"
 #include "softgrain/rigid/step_problem.hpp"
 
@@ -100,7 +98,8 @@ bool BondedGrains::is_exhausted(const StepReport& report, const Box<2>& box) con
 
 std::string BondedGrains::exhaustion(const Box<2>& box) const {
   return fmt::format(
-      "the rigid primaries fill {:.3f} of the box, their random close packing, and overlap by more than {} of "
+      "the rigid primaries fill {:.3f} of the box, their random close packing, and overlap by more than {} "
+      "of "
       "their radius in the mean: no smaller box holds them",
       solid_fraction(box), close_packing_overlap);
 }
@@ -179,45 +178,6 @@ std::vector<Vec<2>> BondedGrains::centres() const {
   return centre;
 }
 
-std::vector<ContactPoint> BondedGrains::contacts() const {
-  const auto& particles = dynamics_.particles;
-  const auto& contacts = dynamics_.contacts;
-  const int n = particles.size();
-  std::vector<ContactPoint> points;
-  for (int c = 0; c < contacts.size(); ++c) {
-    const int a = contacts.body_a[c], b = contacts.body_b[c];
-    const bool wall = b >= n;
-    if (!(contacts.impulse[c][0] > 0) || (!wall && particles.grain[a] == particles.grain[b])) continue;
-    const Vec<2>& normal = contacts.normal[c];
-    const Vec<2> impulse = contacts.impulse[c][0] * normal + contacts.impulse[c][1] * perpendicular(normal);
-    points.push_back({.a = particles.grain[a],
-                      .b = wall ? wall_index(b - n) : particles.grain[b],
-                      .force = (1 / impulse_time_) * impulse,
-                      .normal = normal,
-                      .position = particles.position[a] + particles.radius[a] * normal,
-                      // a row of touching primaries: each takes its diameter of the outline
-                      .length = particles.radius[a] + particles.radius[wall ? a : b]});
-  }
-  return points;
-}
-
-Outlines BondedGrains::outlines() const {
-  const auto& particles = dynamics_.particles;
-  Outlines all{.vertex = {}, .begin = {0}, .area = 0};
-  for (const GrainRange& grain : dynamics_.reference.grains) {
-    const auto first = static_cast<std::size_t>(grain.begin), count = grain.end - first;
-    const auto x = std::span(particles.position).subspan(first, count);
-    const auto radius = std::span(particles.radius).subspan(first, count);
-    // the probe is a primary of mean size
-    const double probe = std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(count);
-    const std::vector<Vec<2>> outline = disk_outline(x, radius, probe);
-    all.vertex.insert(all.vertex.end(), outline.begin(), outline.end());
-    all.begin.push_back(static_cast<int>(all.vertex.size()));
-  }
-  all.area = total_area(all.vertex, all.begin);
-  return all;
-}
-
 /// Outlines and grains of a box, primaries and their contacts always.
 Scene BondedGrains::scene(const Box<2>& box) const {
   const auto& particles = dynamics_.particles;
@@ -291,8 +251,9 @@ void BondedGrains::visit(StateVisitor& visit) {
   visit({"list_between", "m", Owner::body, Role::list, "where the list between grains was made"},
         reference.between);
   visit({"list_wall_point", "m", Owner::wall, Role::list, "where the walls were then"}, reference.wall_point);
-  visit({"impulse_time", "s", Owner::run, Role::start, "the step over which impulses acted; 0: none was made"},
-        impulse_time_);
+  visit(
+      {"impulse_time", "s", Owner::run, Role::start, "the step over which impulses acted; 0: none was made"},
+      impulse_time_);
   visit({"work_of_walls", "J/m", Owner::run, Role::sum, "done by the walls"}, work_.walls);
   visit({"work_dissipated", "J/m", Owner::run, Role::sum, "in all contacts"}, work_.dissipation);
   visit({"work_dissipated_between", "J/m", Owner::run, Role::sum, "of it between grains and at walls"},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "softgrain/bpm/attraction_forces.hpp"
+#include "softgrain/bpm/bonded_view.hpp"
 #include "softgrain/model/model.hpp"
 #include "softgrain/rigid/step.hpp"
 
@@ -13,7 +14,7 @@ namespace softgrain {
 
 /// Grains of bonded primaries as they are placed.
 struct BondedGrainsSetup {
-  RigidParticles<2> particles;      ///< grain after grain
+  RigidParticles<2> particles;       ///< grain after grain
   std::vector<double> grain_radius;  ///< of the undeformed grains [m]
   std::vector<Attraction> laws;      ///< of each grain
   FrictionRule friction;
@@ -24,9 +25,9 @@ struct BondedGrainsSetup {
 };
 
 /// The bonded-particle model: a grain is an aggregate of rigid primaries that attract each other and touch by
-/// contact dynamics (the paper's BPM-CD). In a box the grains are exhausted where their primaries are packed so
-/// densely that no smaller box holds them: rigid disks have no solution past their own random close packing,
-/// and a growing overlap says so.
+/// contact dynamics (the paper's BPM-CD). In a box the grains are exhausted where their primaries are packed
+/// so densely that no smaller box holds them: rigid disks have no solution past their own random close
+/// packing, and a growing overlap says so.
 class BondedGrains final : public Model {
  public:
   explicit BondedGrains(BondedGrainsSetup setup);
@@ -44,8 +45,8 @@ class BondedGrains final : public Model {
   std::vector<Vec<2>> centres() const override;
   Bodies bodies() const override;
   /// Contacts between grains, and with walls.
-  std::vector<ContactPoint> contacts() const override;
-  Outlines outlines() const override;
+  std::vector<ContactPoint> contacts() const override { return contact_points(dynamics_, impulse_time_); }
+  Outlines outlines() const override { return outlines_of(dynamics_); }
   std::pair<double, double> extent() const override;
   Energies energies() const override;
   Numbers numbers(const Box<2>& box) const override;
@@ -73,7 +74,7 @@ class BondedGrains final : public Model {
   double density_ = 0, sigma_I_ = 0;
   AttractionForces attraction_;
   RigidDynamics<2> dynamics_;
-  int most_sweeps_ = 0;       // of a step but the first
+  int most_sweeps_ = 0;      // of a step but the first
   double impulse_time_ = 0;  // the step over which impulses acted; 0: none was made [s]
   Work work_;
   std::vector<Vec<2>> velocity_start_;  // of the step whose problem is kept

@@ -34,8 +34,8 @@ std::vector<double> primary_pressures(const RigidDynamics<2>& dynamics, const At
   for (int i = 0; i < n; ++i) squares[particles.grain[i]] += particles.radius[i] * particles.radius[i];
   for (int i = 0; i < n; ++i) {
     const double R = grain_radius[particles.grain[i]];
-    area[i] = std::numbers::pi * R * R * particles.radius[i] * particles.radius[i] /
-              squares[particles.grain[i]];
+    area[i] =
+        std::numbers::pi * R * R * particles.radius[i] * particles.radius[i] / squares[particles.grain[i]];
   }
   return virial_pressure(forces, area);
 }

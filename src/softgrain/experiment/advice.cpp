@@ -3,13 +3,12 @@
 #include <cmath>
 
 #include "softgrain/experiment/bpm_step.hpp"
-#include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/estimate.hpp"
+#include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/sample.hpp"
 
 namespace softgrain {
 namespace {
-
 
 /// <a0> of one grain [m]: primaries of equal size that fill pi R^2 at a packing fraction of 0.84.
 double mean_distance(const Case& c) { return 2 * c.grain.radius * std::sqrt(0.84 / c.bpm.primaries); }

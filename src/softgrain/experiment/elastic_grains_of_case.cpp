@@ -69,14 +69,12 @@ PlacedModel lattice_grain_of(const Case& c) {
                                       .friction = c.contact.friction,
                                       .wall_friction = c.contact.wall_friction,
                                       .damping = c.mpm.damping});
-  const double dt = c.time.step > 0 ? c.time.step
-                                        : stable_time_step(dynamics.law, dynamics.density, cell);
+  const double dt = c.time.step > 0 ? c.time.step : stable_time_step(dynamics.law, dynamics.density, cell);
   return {std::make_unique<LatticeGrains>(std::move(dynamics)), std::move(box), dt};
 }
 
 PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double smallest_radius) {
-  const double dt =
-      c.time.step > 0 ? c.time.step : way_share * smallest_radius / c.loading.wall_velocity;
+  const double dt = c.time.step > 0 ? c.time.step : way_share * smallest_radius / c.loading.wall_velocity;
   const ImplicitOptions options{.tolerance = tolerance_of(c, grains, box.height()),
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,

@@ -75,9 +75,9 @@ class Loading {
 
   void visit(StateVisitor& visit);
 
-  WallBody body;      ///< of walls that keep a stress
-  double speed = 0;   ///< of these walls towards each other [m/s]
-  double slope = 0;   ///< d sigma/dv that the search for their speed met last [Pa s/m]
+  WallBody body;     ///< of walls that keep a stress
+  double speed = 0;  ///< of these walls towards each other [m/s]
+  double slope = 0;  ///< d sigma/dv that the search for their speed met last [Pa s/m]
 
  private:
   struct Way {
@@ -98,16 +98,17 @@ class Loading {
   double height_ = 0;  // where strains count from [m]
   double start_ = 0;   // travel at the start of the first stage [m]
 
-  std::size_t stage_ = 0;    // of the coming step
-  double stage_start_ = 0;   // [s]
+  std::size_t stage_ = 0;   // of the coming step
+  double stage_start_ = 0;  // [s]
   int number_ = 0, number_of_last_ = 0;
   End ended_ = End::none;
   bool holds_ = false;
   bool approaches_ = false, last_of_stage_ = false;  // of the coming step
-  double stress_ = 0, stress_twice_ = 0;  // mean of sigma over 0.1 % of strain at the full speed, and its mean [Pa]
-  double largest_stress_ = 0;             // so far [Pa]
-  double open_ = 0;                       // t for which sigma has been below half of sigma_h [s]
-  double lent_ = 0;                       // s [Pa]
+  double stress_ = 0,
+         stress_twice_ = 0;    // mean of sigma over 0.1 % of strain at the full speed, and its mean [Pa]
+  double largest_stress_ = 0;  // so far [Pa]
+  double open_ = 0;            // t for which sigma has been below half of sigma_h [s]
+  double lent_ = 0;            // s [Pa]
   HeldStress held_;
 };
 

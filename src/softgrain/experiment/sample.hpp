@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "softgrain/experiment/case.hpp"
-#include "softgrain/geometry/box.hpp"
 #include "softgrain/experiment/diameters.hpp"
 #include "softgrain/experiment/placed_grain.hpp"
+#include "softgrain/geometry/box.hpp"
 #include "softgrain/math/vec.hpp"
 
 namespace softgrain {

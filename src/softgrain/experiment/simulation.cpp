@@ -102,9 +102,10 @@ std::string Simulation::early_end() const {
 
 LoadingOutcome Simulation::outcome() const {
   if (loading_.ended() != Loading::End::exhausted) return loading_.outcome();
-  return {.completed = false,
-          .shortfall = fmt::format("the path ends at a strain of {:.4g}, before loading.max_strain {:.4g}: {}",
-                                   strain(), loading_.last_strain(), early_end())};
+  return {
+      .completed = false,
+      .shortfall = fmt::format("the path ends at a strain of {:.4g}, before loading.max_strain {:.4g}: {}",
+                               strain(), loading_.last_strain(), early_end())};
 }
 
 Observation Simulation::observe() const {
@@ -158,8 +159,8 @@ void Simulation::begin_row() {
 Scene Simulation::scene() const {
   Scene scene = model_->scene(box_);
   const double low = box_.low(1).point[1], high = box_.high(1).point[1];
-  const auto [left, right] = box_.bounded(0) ? std::pair(box_.low(0).point[0], box_.high(0).point[0])
-                                             : model_->reach();
+  const auto [left, right] =
+      box_.bounded(0) ? std::pair(box_.low(0).point[0], box_.high(0).point[0]) : model_->reach();
   scene.wall_segments = {left, low, right, low, left, high, right, high};  // in the order of BoxWall
   if (box_.bounded(0))
     scene.wall_segments.insert(scene.wall_segments.end(), {left, low, left, high, right, low, right, high});

@@ -31,9 +31,9 @@ class Simulation final {
   bool finished() const { return loading_.finished(); }
   /// 0 at the start, 1 when finished; never goes back.
   double progress() const { return loading_.progress(time(), dt_, steps_planned_); }
-  double time() const { return static_cast<double>(step_) * dt_; }    ///< [s]
-  double strain() const { return loading_.strain(box_); }             ///< by the walls, as in the rows
-  double time_step() const { return dt_; }                            ///< [s]
+  double time() const { return static_cast<double>(step_) * dt_; }  ///< [s]
+  double strain() const { return loading_.strain(box_); }           ///< by the walls, as in the rows
+  double time_step() const { return dt_; }                          ///< [s]
   std::int64_t steps_done() const { return step_; }
   std::int64_t steps_planned() const { return steps_planned_; }
   /// Why the simulation has finished before its last planned step, for the user; "" if it has not.
@@ -66,9 +66,9 @@ class Simulation final {
   Checkpoint checkpoint() const;
   /// Raises IoError for a checkpoint that is not of this case.
   void restore(const Checkpoint& checkpoint);
-  /// Before the first step: takes grains and walls from another run's checkpoint, with their energies and what
-  /// was spent so far. Steps and time begin anew, and so does the loading; its strains count from where the
-  /// other run began. Raises IoError for a checkpoint of other grains.
+  /// Before the first step: takes grains and walls from another run's checkpoint, with their energies and
+  /// what was spent so far. Steps and time begin anew, and so does the loading; its strains count from where
+  /// the other run began. Raises IoError for a checkpoint of other grains.
   void begin_from(const Checkpoint& checkpoint);
   void visit(StateVisitor& visit);
 

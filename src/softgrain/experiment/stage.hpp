@@ -52,8 +52,8 @@ struct LoadingEnds {
 
 /// Stages of the short forms of a case. All go to a last strain at constant speed, back at given strains by a
 /// given strain and together again, and rest where they turn and at the end:
-/// diametral (one grain) and compaction by the top wall alone; isotropic by all four walls, the top and bottom
-/// at half the speed each, so that the box keeps its shape and centre.
+/// diametral (one grain) and compaction by the top wall alone; isotropic by all four walls, the top and
+/// bottom at half the speed each, so that the box keeps its shape and centre.
 std::vector<Stage> stages_of(const Case& the_case);
 
 /// What a strain is in a case, with a box of this height at the start [m].

@@ -68,7 +68,8 @@ struct Box {
   void visit(StateVisitor& visit) {
     std::vector<Vec<Dim>> point;
     for (const Wall<Dim>& wall : walls) point.push_back(wall.point);
-    visit({"wall_point", "m", Owner::wall, Role::state, "point on each wall: bottom, top, left, right"}, point);
+    visit({"wall_point", "m", Owner::wall, Role::state, "point on each wall: bottom, top, left, right"},
+          point);
     for (std::size_t w = 0; w < walls.size(); ++w) walls[w].point = point[w];
   }
 };

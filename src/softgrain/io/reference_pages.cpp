@@ -18,10 +18,9 @@ struct Group {
   ColumnGroup group;
   std::string_view heading;
 };
-constexpr std::array groups{Group{ColumnGroup::every_run, "Every run"},
-                            Group{ColumnGroup::boxes, "Boxes of many grains"},
-                            Group{ColumnGroup::bonded, "Bonded grains"},
-                            Group{ColumnGroup::elastic, "Elastic grains"}};
+constexpr std::array groups{
+    Group{ColumnGroup::every_run, "Every run"}, Group{ColumnGroup::boxes, "Boxes of many grains"},
+    Group{ColumnGroup::bonded, "Bonded grains"}, Group{ColumnGroup::elastic, "Elastic grains"}};
 
 std::string dash(std::string_view unit) { return unit.empty() ? "-" : std::string(unit); }
 
@@ -118,9 +117,11 @@ std::string checkpoint_page() {
       {"Bonded grains", fields_of(GrainModel::bpm, backward_euler, total_lagrangian)},
       {"Elastic grains, implicit", fields_of(GrainModel::mpm, backward_euler, total_lagrangian)},
       {"Elastic grains, explicit", fields_of(GrainModel::mpm, symplectic_euler, total_lagrangian)},
-      {"Elastic grains, updated Lagrangian", fields_of(GrainModel::mpm, symplectic_euler, updated_lagrangian)}};
+      {"Elastic grains, updated Lagrangian",
+       fields_of(GrainModel::mpm, symplectic_euler, updated_lagrangian)}};
   std::string text(checkpoint_begin);
-  for (const auto& [heading, fields] : models) text += fmt::format("\n## {}\n\n{}", heading, table_of(fields));
+  for (const auto& [heading, fields] : models)
+    text += fmt::format("\n## {}\n\n{}", heading, table_of(fields));
   return text;
 }
 

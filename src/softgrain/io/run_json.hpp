@@ -10,9 +10,9 @@ namespace softgrain {
 
 /// The state of another run that a run was begun from.
 struct RunOrigin {
-  std::string directory;     ///< of that run
-  std::string snapshot;      ///< "s000123.h5"
-  std::string content_hash;  ///< of that snapshot
+  std::string directory;             ///< of that run
+  std::string snapshot;              ///< "s000123.h5"
+  std::string content_hash;          ///< of that snapshot
   std::vector<std::string> command;  ///< that began that run
 };
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "softgrain/observe/columns.hpp"
 #include "softgrain/io/file.hpp"
+#include "softgrain/observe/columns.hpp"
 
 namespace softgrain {
 

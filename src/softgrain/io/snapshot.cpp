@@ -154,8 +154,8 @@ void check_format(const Hdf5Reader& file, const std::string& name) {
     throw IoError(fmt::format("{}: snapshot is not complete", name));
 }
 
-/// Raises std::bad_alloc here, where it is caught, if there is no room for what the HDF5 library will need: it
-/// may crash where it runs out of memory.
+/// Raises std::bad_alloc here, where it is caught, if there is no room for what the HDF5 library will need:
+/// it may crash where it runs out of memory.
 void require_room(const Datasets& datasets) {
   std::size_t numbers = 0;
   for (const auto& [path, array] : datasets)

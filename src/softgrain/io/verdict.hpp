@@ -29,6 +29,7 @@ struct Verdict {
 };
 
 /// The one place that judges.
-Verdict verdict_of(const RunReport& report, const LoadingOutcome& path = {}, const VerdictLimits& limits = {});
+Verdict verdict_of(const RunReport& report, const LoadingOutcome& path = {},
+                   const VerdictLimits& limits = {});
 
 }  // namespace softgrain

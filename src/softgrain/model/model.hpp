@@ -74,8 +74,8 @@ class Model {
   /// One step of dt [s]; the walls of the box move by dt times their velocity and get the impulses that they
   /// felt. Raises NumericalError where the state is not finite or no solution is found.
   virtual StepReport step(Box<2>& box, double dt) = 0;
-  /// After a step: true if no smaller box holds the grains. Raises NumericalError where its overlaps show that
-  /// the step has no solution.
+  /// After a step: true if no smaller box holds the grains. Raises NumericalError where its overlaps show
+  /// that the step has no solution.
   virtual bool is_exhausted(const StepReport&, const Box<2>&) const { return false; }
   /// Why no smaller box holds them, for the user.
   virtual std::string exhaustion(const Box<2>&) const { return ""; }
@@ -87,9 +87,9 @@ class Model {
   /// Sums since the last row begin again.
   virtual void begin_row() {}
 
-  virtual double density() const = 0;                   ///< of the grains [kg/m^3]
-  virtual std::vector<double> radii() const = 0;        ///< of the undeformed grains [m]
-  virtual std::vector<Vec<2>> centres() const = 0;      ///< of mass, of the grains [m]
+  virtual double density() const = 0;               ///< of the grains [kg/m^3]
+  virtual std::vector<double> radii() const = 0;    ///< of the undeformed grains [m]
+  virtual std::vector<Vec<2>> centres() const = 0;  ///< of mass, of the grains [m]
   virtual Bodies bodies() const = 0;
   virtual std::vector<ContactPoint> contacts() const = 0;  ///< that carry impulse, of the last step
   virtual Outlines outlines() const = 0;

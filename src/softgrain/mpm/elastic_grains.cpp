@@ -135,8 +135,8 @@ SoftView ElasticGrains<Dynamics>::view() const {
 }
 
 /// The damper takes up the waves that come to a wall, Z = rho c; implicit walls are sought so far as backward
-/// Euler's steps, longer than a wave needs through the box, do not damp them anyway. The mass of explicit ones
-/// is that of an eighth of a full box: less, and the stress of a step shakes the wall.
+/// Euler's steps, longer than a wave needs through the box, do not damp them anyway. The mass of explicit
+/// ones is that of an eighth of a full box: less, and the stress of a step shakes the wall.
 template <class Dynamics>
 WallBody ElasticGrains<Dynamics>::wall_body(const Box<2>& box, double dt) const {
   const double c = wave_speed(dynamics_.grains), rho = density(), height = box.height();

@@ -171,9 +171,8 @@ std::vector<GrainView> LatticeGrains::grains() const {
   };
   std::vector<GrainView> views;
   for (const PointGrain& grain : dynamics_.grains)
-    views.push_back({.position = view(grain.position),
-                     .velocity = view(grain.velocity),
-                     .outline = view(grain.outline)});
+    views.push_back(
+        {.position = view(grain.position), .velocity = view(grain.velocity), .outline = view(grain.outline)});
   return views;
 }
 

@@ -16,9 +16,7 @@ Value force_on(const Observation& o) {
   return o.wall_force[wall];
 }
 
-Value mean_side_force(const Observation& o) {
-  return (o.wall_force[2] + o.wall_force[3]) / 2;
-}
+Value mean_side_force(const Observation& o) { return (o.wall_force[2] + o.wall_force[3]) / 2; }
 
 /// What only boxes have.
 template <class Function>

@@ -28,8 +28,8 @@ struct Observation {
   double time = 0;  ///< [s]
   double strain = 0;
   int leg = 0;
-  double height = 0, width = 0;     ///< of the box, or the grain's width [m]
-  std::vector<double> wall_force;   ///< outwards, by BoxWall, mean since the last row [N/m]
+  double height = 0, width = 0;            ///< of the box, or the grain's width [m]
+  std::vector<double> wall_force;          ///< outwards, by BoxWall, mean since the last row [N/m]
   std::optional<PackingMeasures> packing;  ///< of a closed box
   Energies energies;
   Numbers numbers;  ///< of the model alone

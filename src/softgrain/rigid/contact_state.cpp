@@ -39,8 +39,9 @@ void visit_impulses(RigidContacts<2>& contacts, StateVisitor& visit) {
     const std::pair wanted(pairs[2 * k], pairs[2 * k + 1]);
     const auto found = std::ranges::lower_bound(sorted, wanted, {}, by_pair);
     if (found == sorted.end() || by_pair(*found) != wanted)
-      throw IoError(fmt::format("the snapshot's array 'contact_pair' holds {} and {}, which do not touch here",
-                                wanted.first, wanted.second));
+      throw IoError(
+          fmt::format("the snapshot's array 'contact_pair' holds {} and {}, which do not touch here",
+                      wanted.first, wanted.second));
     contacts.impulse[*found] = impulse[k];
   }
 }

@@ -18,15 +18,15 @@ void StateWriter::integers(const Field& field, std::vector<std::int64_t>& values
 template <class T>
 void StateReader::read(const Field& field, std::vector<T>& values, std::size_t columns, Length length) const {
   const auto found = arrays_.find(std::string(field.name));
-  const auto* stored =
-      found == arrays_.end() ? nullptr : std::get_if<std::vector<T>>(&found->second.values);
+  const auto* stored = found == arrays_.end() ? nullptr : std::get_if<std::vector<T>>(&found->second.values);
   if (stored == nullptr || found->second.columns != columns ||
       (length == Length::fixed ? stored->size() != values.size() : stored->size() % columns != 0))
-    throw IoError(fmt::format(
-        "the snapshot has no array '{}' of {} numbers a row{}: it belongs to another case, or to another version "
-        "of softgrain; begin the run anew with --force",
-        field.name, columns,
-        length == Length::fixed ? fmt::format(" and {} rows", values.size() / columns) : ""));
+    throw IoError(
+        fmt::format("the snapshot has no array '{}' of {} numbers a row{}: it belongs to another case, or to "
+                    "another version "
+                    "of softgrain; begin the run anew with --force",
+                    field.name, columns,
+                    length == Length::fixed ? fmt::format(" and {} rows", values.size() / columns) : ""));
   for (const T value : *stored)
     if (!std::isfinite(static_cast<double>(value)))
       throw IoError(fmt::format("the snapshot's array '{}' holds {}", field.name, value));

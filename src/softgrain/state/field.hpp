@@ -53,9 +53,7 @@ class StateVisitor {
       value = static_cast<T>(values.front());
     }
   }
-  void operator()(const Field& field, std::vector<double>& values) {
-    reals(field, values, 1, Length::fixed);
-  }
+  void operator()(const Field& field, std::vector<double>& values) { reals(field, values, 1, Length::fixed); }
   template <int N>
   void operator()(const Field& field, std::vector<Vec<N>>& rows) {
     vectors(field, rows, Length::fixed);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include "support/simulations.hpp"
 
-
 using namespace softgrain;
 
 namespace {

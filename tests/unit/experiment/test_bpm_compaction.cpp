@@ -73,8 +73,7 @@ TEST_CASE("both models begin with the same sample, bit for bit") {
     centre[grain[v]] += Vec<2>{x[2 * v], x[2 * v + 1]};
     ++vertices[grain[v]];
   }
-  for (int g = 0; g < 6; ++g)
-    CHECK(norm((1.0 / vertices[g]) * centre[g] - placed.grains[g].centre) < 1e-12);
+  for (int g = 0; g < 6; ++g) CHECK(norm((1.0 / vertices[g]) * centre[g] - placed.grains[g].centre) < 1e-12);
 }
 
 TEST_CASE("grains of primaries stand in their places without overlap, each with the mass of its disk") {

@@ -107,9 +107,9 @@ TEST_CASE("a checkpoint of another case is refused by the array that does not fi
                        IoError);
   Checkpoint incomplete = of_sixty.checkpoint();
   incomplete.arrays.erase("wall_point");
-  CHECK_THROWS_WITH_AS(of_sixty.restore(incomplete),
-                       doctest::Contains("no array 'wall_point' of 2 numbers a row and 2 rows: it belongs to"),
-                       IoError);
+  CHECK_THROWS_WITH_AS(
+      of_sixty.restore(incomplete),
+      doctest::Contains("no array 'wall_point' of 2 numbers a row and 2 rows: it belongs to"), IoError);
 }
 
 TEST_CASE("the plates start at the grain's lowest and highest point, and the top one follows the path") {
@@ -127,7 +127,8 @@ TEST_CASE("the plates start at the grain's lowest and highest point, and the top
   CHECK(simulation.box().walls[0].point[1] == doctest::Approx(low).epsilon(1e-14));
   CHECK(simulation.box().walls[1].point[1] == doctest::Approx(high - 100 * 4 * 0.25e-6).epsilon(1e-12));
   const auto row = test::next_row(simulation);
-  CHECK(test::value_of(row, "strain") == doctest::Approx(-std::log(1 - 50 * 4 * 0.25e-6 / 5e-3)).epsilon(1e-9));
+  CHECK(test::value_of(row, "strain") ==
+        doctest::Approx(-std::log(1 - 50 * 4 * 0.25e-6 / 5e-3)).epsilon(1e-9));
   CHECK(test::value_of(row, "wall_height") == doctest::Approx(high - low - 1e-4).epsilon(1e-12));
   CHECK(test::value_of(row, "time") == doctest::Approx(100 * 0.25e-6).epsilon(1e-14));
 }
@@ -192,7 +193,8 @@ TEST_CASE("a row's wall forces are means over the steps since the last row") {
   CHECK(top > 0);
   CHECK(test::value_of(row, "force_bottom") == doctest::Approx(bottom).epsilon(1e-12));
   CHECK(test::value_of(row, "force_top") == doctest::Approx(top).epsilon(1e-12));
-  CHECK(test::value_of(row, "stress_top") == doctest::Approx(top / test::value_of(row, "width")).epsilon(1e-12));
+  CHECK(test::value_of(row, "stress_top") ==
+        doctest::Approx(top / test::value_of(row, "width")).epsilon(1e-12));
 }
 
 TEST_CASE("the width is that of the grain, and the scene's contacts are those of the row") {

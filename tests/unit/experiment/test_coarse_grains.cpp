@@ -6,7 +6,6 @@
 #include <vector>
 #include "support/simulations.hpp"
 
-
 using namespace softgrain;
 
 namespace {
@@ -88,7 +87,8 @@ TEST_CASE("a grain of any number of cells starts between plates that only touch 
       c.time.step = 1e-7;
       c.loading = {.wall_velocity = 2e-5, .max_strain = 1e-3, .unload_at = {}};
       const auto simulation = create_simulation(c);
-      CHECK(test::value_of(test::next_row(*simulation), "wall_height") == doctest::Approx(2 * c.grain.radius));
+      CHECK(test::value_of(test::next_row(*simulation), "wall_height") ==
+            doctest::Approx(2 * c.grain.radius));
       CHECK(test::value_of(test::next_row(*simulation), "area_ratio") == doctest::Approx(1));
       simulation->step();
       const auto row = test::next_row(*simulation);

@@ -18,7 +18,8 @@ TEST_CASE("a loading without unloading takes travel over wall velocity over time
 
 TEST_CASE("the estimate counts the steps of every path") {
   Case c;
-  c.loading = {.wall_velocity = 0.2, .max_strain = 0.35, .unload_at = {0.1}, .unload_by = 0.015, .hold = 1e-3};
+  c.loading = {
+      .wall_velocity = 0.2, .max_strain = 0.35, .unload_at = {0.1}, .unload_by = 0.015, .hold = 1e-3};
   const auto travel = [&](double from, double to) {  // |d height| of one grain
     return 2 * c.grain.radius * std::abs(std::exp(-from) - std::exp(-to));
   };

@@ -73,7 +73,8 @@ TEST_CASE("walls that keep a stress bring back what is lost of it, as their damp
   const Case::Loading keys{
       .wall_velocity = v, .max_strain = 0.3, .unload_at = {}, .hold = 12e-3, .hold_stress = target};
   Loading loading = loading_of(keys);
-  loading.body = {.mass = 2, .damper = 4e5, .patience = 1};  // of seconds: it lends nothing, waits for nothing
+  loading.body = {
+      .mass = 2, .damper = 4e5, .patience = 1};  // of seconds: it lends nothing, waits for nothing
   Spring spring{.stiffness = 10 * target, .loss = 0.3 * target};
   const std::int64_t planned = loading.steps_planned(dt);
   double progress = 0;
@@ -134,7 +135,8 @@ TEST_CASE("a stress that is not kept is told with its figures, and the loading i
 }
 
 TEST_CASE("a stress that rises evenly ends the run where it is reached, not where its mean gets there") {
-  Loading loading = loading_of({.wall_velocity = v, .max_strain = 0.3, .max_stress = target, .unload_at = {}});
+  Loading loading =
+      loading_of({.wall_velocity = v, .max_strain = 0.3, .max_stress = target, .unload_at = {}});
   Spring spring{.stiffness = 100 * target};
   while (!loading.finished()) spring.advance(loading);
   CHECK(spring.stress == doctest::Approx(target).epsilon(5e-3));  // 1.1 by the mean over 0.1 % of strain
@@ -202,14 +204,19 @@ TEST_CASE("a given motion is asked once a step, at its beginning, and keeps the 
 TEST_CASE("a given motion without an end or without a speed is refused") {
   Loading loading = loading_of({});
   for (const double duration : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
-    CHECK_THROWS_AS(loading.follow({.duration = duration, .velocity = [](double) { return -1; }}), UsageError);
+    CHECK_THROWS_AS(loading.follow({.duration = duration, .velocity = [](double) { return -1; }}),
+                    UsageError);
   loading.follow({.duration = 1, .velocity = [](double) { return std::nan(""); }});
   CHECK_THROWS_AS(loading.approach_speed(square(), 0, 0.5), UsageError);
 }
 
 TEST_CASE("a loading goes on from a copy of its state, and one of another case is refused") {
-  const Case::Loading keys{
-      .wall_velocity = v, .max_strain = 0.3, .unload_at = {0.01}, .unload_by = 0.005, .hold = 1e-3, .hold_stress = target};
+  const Case::Loading keys{.wall_velocity = v,
+                           .max_strain = 0.3,
+                           .unload_at = {0.01},
+                           .unload_by = 0.005,
+                           .hold = 1e-3,
+                           .hold_stress = target};
   Loading loading = loading_of(keys), other = loading_of(keys);
   loading.body = other.body = {.mass = 2, .damper = 4e5, .patience = 1};
   Spring spring{.stiffness = 10 * target};

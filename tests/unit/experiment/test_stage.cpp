@@ -66,8 +66,9 @@ TEST_CASE("the strain of a grain is -ln(1 - d/R) with d half the travel of the w
 }
 
 TEST_CASE("the top wall goes down, turns back at each strain asked for by the strain asked for, and stops") {
-  const Case c = case_of(LoadingPath::diametral,
-                         {.wall_velocity = 0.2, .max_strain = 0.35, .unload_at = {0.1, 0.3}, .unload_by = 0.012});
+  const Case c =
+      case_of(LoadingPath::diametral,
+              {.wall_velocity = 0.2, .max_strain = 0.35, .unload_at = {0.1, 0.3}, .unload_by = 0.012});
   check_ends(legs_of(c, 2 * R, 0.25e-6), {0.1, 0.088, 0.3, 0.288, 0.35});
 }
 
@@ -135,7 +136,9 @@ TEST_CASE("a packing fraction ends the loading where undeformed grains fill it, 
 }
 
 TEST_CASE("a loading that cannot be followed is refused with the key and the value") {
-  const auto make = [](const Case::Loading& loading) { check_loading(case_of(LoadingPath::diametral, loading)); };
+  const auto make = [](const Case::Loading& loading) {
+    check_loading(case_of(LoadingPath::diametral, loading));
+  };
   CHECK_THROWS_WITH_AS(make({.wall_velocity = -1}), "loading.wall_velocity must be > 0, got -1 m/s",
                        UsageError);
   CHECK_THROWS_WITH_AS(make({.max_strain = 0}), "loading.max_strain must be > 0, got 0", UsageError);

@@ -81,7 +81,8 @@ TEST_CASE("all errors come at once, sorted by line, each with its line of the fi
 TEST_CASE("a line that is no TOML does not hide the other errors") {
   const std::string text =
       refusal("[grain]\nradius = 5 mm\ndensity = -1\n[time]\nstep = 1e-7\nstep = 2e-7\n");
-  CHECK(mentions(text, "case.toml:2:12: error: words and quantities stand in quotation marks: radius = \"5 mm\""));
+  CHECK(mentions(text,
+                 "case.toml:2:12: error: words and quantities stand in quotation marks: radius = \"5 mm\""));
   CHECK(mentions(text, "case.toml:3:11: error: grain.density = -1 is out of range"));
   CHECK(mentions(text, "case.toml:6:8: error: given twice"));
   CHECK(mentions(text, "3 errors; nothing was run"));

@@ -195,8 +195,7 @@ TEST_CASE("a numerical failure names the last good snapshot and leaves the run f
   const auto last_good = directory.path() / "snap" / "s000100.h5";
   const auto message = fmt::format(
       "step 121: position of particle 0 is not finite\nthe last good state is {}", last_good.string());
-  CHECK_THROWS_WITH_AS(run_ball(directory.path(), request(), broken), message.c_str(),
-                       NumericalError);
+  CHECK_THROWS_WITH_AS(run_ball(directory.path(), request(), broken), message.c_str(), NumericalError);
   CHECK_NOTHROW(read_snapshot(last_good));
   CHECK(run_json(directory.path())["state"] == "failed");
   CHECK(run_json(directory.path())["message"] == message);
