@@ -11,12 +11,18 @@ constexpr int least_for_threads = 512;
 
 }  // namespace
 
-inline Vec<2> LumpedContacts::relative_velocity(const Row& row) const {
+/// sum weight v
+inline Vec<2> LumpedContacts::velocity_of(const Row& row) const {
   const Vec<2>* v = velocity_.data();
   Vec<2> u = row.weight[0] * v[row.vertex[0]];
-  if (!row.single)
-    u += (row.weight[1] * v[row.vertex[1]] + row.weight[2] * v[row.vertex[2]]) +
-         (row.weight[3] * v[row.vertex[3]] + row.weight[4] * v[row.vertex[4]]);
+  if (row.vertices == 1) return u;
+  Vec<2> others = row.weight[1] * v[row.vertex[1]] + row.weight[2] * v[row.vertex[2]];
+  if (row.vertices == 5) others += row.weight[3] * v[row.vertex[3]] + row.weight[4] * v[row.vertex[4]];
+  return u += others;
+}
+
+inline Vec<2> LumpedContacts::relative_velocity(const Row& row) const {
+  const Vec<2> u = velocity_of(row);
   return {dot(row.normal, u) + row.offset[0], dot(perpendicular(row.normal), u) + row.offset[1]};
 }
 
@@ -24,8 +30,10 @@ inline void LumpedContacts::apply_impulse(const Row& row, const Vec<2>& dp) {
   const Vec<2> P = dp[0] * row.normal + dp[1] * perpendicular(row.normal);
   Vec<2>* v = velocity_.data();
   v[row.vertex[0]] += row.mobility[0] * P;
-  if (row.single) return;
-  for (std::size_t k = 1; k < 5; ++k) v[row.vertex[k]] += row.mobility[k] * P;
+  if (row.vertices == 1) return;
+  for (std::size_t k = 1; k < 3; ++k) v[row.vertex[k]] += row.mobility[k] * P;
+  if (row.vertices == 3) return;
+  for (std::size_t k = 3; k < 5; ++k) v[row.vertex[k]] += row.mobility[k] * P;
 }
 
 LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, const OutlineState& outline,
@@ -53,7 +61,6 @@ void LumpedContacts::for_each_strip(const Work& work) const {
 LumpedContacts::Row LumpedContacts::row_of(const OutlineContact& contact, const OutlineState& outline,
                                            std::span<const double> inverse_mass) const {
   Row row;
-  row.vertex.fill(contact.vertex);
   std::size_t count = 0;
   contact.for_each_vertex([&](int vertex, double weight) {
     row.vertex[count] = vertex;
@@ -61,7 +68,7 @@ LumpedContacts::Row LumpedContacts::row_of(const OutlineContact& contact, const 
     row.mobility[count] = weight * inverse_mass[vertex];
     row.delassus += weight * row.mobility[count++];
   });
-  row.single = count == 1;
+  row.vertices = static_cast<int>(count);
   row.normal = contact.normal;
   if (contact.wall >= 0) {
     const Vec<2>& v = outline.walls[contact.wall].velocity;
@@ -86,10 +93,12 @@ void LumpedContacts::apply_impulses(std::span<const Vec<2>> impulse) {
 /// Puts one contact right, and adds the violation that it showed.
 inline void LumpedContacts::solve(const Row& row, Vec<2>& p, double friction, const SolverOptions& options,
                                   Violation& violation) {
-  const Vec<2> u = relative_velocity(row);
-  if (p[0] == 0 && u[0] >= 0) return;
+  const Vec<2> v = velocity_of(row);
+  const double u_n = dot(row.normal, v) + row.offset[0];
+  if (p[0] == 0 && u_n >= 0) return;
+  const double u_t = friction > 0 ? dot(perpendicular(row.normal), v) + row.offset[1] : 0;
   const double gain = row.inverse_delassus;
-  const Vec<2> solved = solve_uncoupled(p, u, gain, gain, friction);
+  const Vec<2> solved = solve_uncoupled(p, Vec<2>{u_n, u_t}, gain, gain, friction);
   violation.add(row.delassus * (solved - p), solved[0]);
   const Vec<2> next = relaxed_impulse(p, solved, friction, options.relaxation);
   const Vec<2> dp = next - p;

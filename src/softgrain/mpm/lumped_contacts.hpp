@@ -41,9 +41,9 @@ class LumpedContacts {
   // per contact and sweep: reads 160 B in the order of memory, and five velocities
   struct Row {
     int contact = 0;
-    bool single = false;               // one vertex, at a wall
-    std::array<int, 5> vertex{};       // the slave, then the master's; or the four of a place at a wall
-    std::array<double, 5> weight{};    // 1, -w_k; or w_k, 0
+    int vertices = 0;                  // 5; at a wall 3, or 1
+    std::array<int, 5> vertex{};       // the slave, then the master's; or those of a place at a wall
+    std::array<double, 5> weight{};    // 1, -w_k; or w_k
     std::array<double, 5> mobility{};  // weight/m: velocity by a unit impulse
     Vec<2> normal, offset;             // u = (n, t) . sum weight v + offset
     double delassus = 0, inverse_delassus = 0;
@@ -51,6 +51,7 @@ class LumpedContacts {
   const Row& row(int contact) const { return rows_[strips_.place[contact]]; }
   Row row_of(const OutlineContact& contact, const OutlineState& outline,
              std::span<const double> inverse_mass) const;
+  Vec<2> velocity_of(const Row& row) const;
   Vec<2> relative_velocity(const Row& row) const;
   void apply_impulse(const Row& row, const Vec<2>& dp);
   void solve(const Row& row, Vec<2>& p, double friction, const SolverOptions& options, Violation& violation);
