@@ -16,7 +16,8 @@ def draw_surface(axes, surface, colours):
     """Polygons or disks, filled; `colours` is one colour or one row for each. Then the rims over them."""
     many = dict(rasterized=len(surface.values) > MOST_VECTORS)
     if len(surface.polygons) == len(surface.rims) > 0:  # whole grains carry their own rims
-        axes.add_collection(PolyCollection(surface.polygons, facecolors=colours, edgecolors=INK, linewidths=0.3))
+        rim = 0.3 if len(surface.rims) < 100 else 0.15  # thin enough for chains to be seen over many
+        axes.add_collection(PolyCollection(surface.polygons, facecolors=colours, edgecolors=INK, linewidths=rim))
         return
     if surface.polygons:
         axes.add_collection(PolyCollection(surface.polygons, facecolors=colours, edgecolors="face", linewidths=0.15, **many))
