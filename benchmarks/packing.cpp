@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "softgrain/math/random.hpp"
-#include "softgrain/rigid/contact_system.hpp"
+#include "softgrain/rigid/rigid_contact_system.hpp"
 #include "softgrain/rigid/step.hpp"
 
 namespace softgrain::bench {

@@ -20,8 +20,8 @@
 #include "python_verbs.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/version.hpp"
-#include "softgrain/io/case_file.hpp"
-#include "softgrain/io/suggest.hpp"
+#include "softgrain/io/case/case_file.hpp"
+#include "softgrain/io/case/suggest.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 

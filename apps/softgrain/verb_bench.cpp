@@ -10,8 +10,8 @@
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/simulation.hpp"
-#include "softgrain/io/case_file.hpp"
-#include "softgrain/io/run_json.hpp"
+#include "softgrain/io/case/case_file.hpp"
+#include "softgrain/io/run/run_json.hpp"
 #include "verbs.hpp"
 
 namespace softgrain {

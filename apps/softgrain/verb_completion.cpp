@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "choices.hpp"
-#include "softgrain/io/case_forms.hpp"
-#include "softgrain/io/schema.hpp"
+#include "softgrain/io/case/case_forms.hpp"
+#include "softgrain/io/case/schema.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 

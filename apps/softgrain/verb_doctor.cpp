@@ -11,7 +11,7 @@
 #include "python_program.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/core/version.hpp"
-#include "softgrain/io/hdf5_file.hpp"
+#include "softgrain/io/format/hdf5_file.hpp"
 #include "verbs.hpp"
 
 namespace softgrain {

@@ -8,10 +8,10 @@
 
 #include "choices.hpp"
 #include "softgrain/core/error.hpp"
-#include "softgrain/io/case_schema.hpp"
-#include "softgrain/io/case_text.hpp"
-#include "softgrain/io/file.hpp"
-#include "softgrain/io/suggest.hpp"
+#include "softgrain/io/case/case_schema.hpp"
+#include "softgrain/io/case/case_text.hpp"
+#include "softgrain/io/case/suggest.hpp"
+#include "softgrain/io/format/file.hpp"
 #include "verbs.hpp"
 
 namespace softgrain {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "softgrain/io/report_page.hpp"
-#include "softgrain/io/run_directory.hpp"
+#include "softgrain/io/page/report_page.hpp"
+#include "softgrain/io/run/run_directory.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 

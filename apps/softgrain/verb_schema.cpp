@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "softgrain/io/case_schema.hpp"
-#include "softgrain/io/reference_pages.hpp"
+#include "softgrain/io/case/case_schema.hpp"
+#include "softgrain/io/page/reference_pages.hpp"
 #include "verbs.hpp"
 
 namespace softgrain {

@@ -13,7 +13,7 @@
 #include "choices.hpp"
 #include "softgrain/contact/contact_problem.hpp"
 #include "softgrain/core/error.hpp"
-#include "softgrain/io/fclib.hpp"
+#include "softgrain/io/format/fclib.hpp"
 #include "verbs.hpp"
 
 namespace softgrain {

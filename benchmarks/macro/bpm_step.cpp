@@ -4,7 +4,7 @@
 #include "bonded.hpp"
 #include "harness.hpp"
 #include "softgrain/bpm/attraction_forces.hpp"
-#include "softgrain/rigid/contact_system.hpp"
+#include "softgrain/rigid/rigid_contact_system.hpp"
 
 using namespace softgrain;
 using namespace softgrain::bench;
@@ -14,12 +14,12 @@ namespace {
 constexpr int steps_before = 4000, steps_measured = 200, calls = 100;
 
 /// What the steps did, in the mean of one step.
-struct StepMeans {
+struct MeanStep {
   double sweeps = 0, rebuilds = 0, contacts = 0;
 };
 
-StepMeans run_steps(Simulation simulation) {
-  StepMeans mean;
+MeanStep run_steps(Simulation simulation) {
+  MeanStep mean;
   const int generation = bonded(simulation).reference.generation;
   for (int k = 0; k < steps_measured; ++k) {
     const StepReport report = simulation.step();
@@ -36,7 +36,7 @@ struct StepParts {
   double whole, attraction, detection, offsets, sweeps, stale, warm_start, velocities, rebuild;
 };
 
-StepParts time_parts(const Simulation& simulation, const Case& paper, const StepMeans& mean) {
+StepParts time_parts(const Simulation& simulation, const Case& paper, const MeanStep& mean) {
   RigidDynamics<2> state = bonded(simulation);
   RigidParticles<2>& particles = state.particles;
   RigidContacts<2>& contacts = state.contacts;
@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
   paper.time.step = 0.25e-6;
   Simulation simulation = simulation_of(paper);
   for (int k = 0; k < steps_before; ++k) simulation.step();
-  const StepMeans mean = run_steps(simulation);
+  const MeanStep mean = run_steps(simulation);
   const StepParts part = time_parts(simulation, paper, mean);
   const int n = bonded(simulation).particles.size(), m = bonded(simulation).contacts.size();
   results.heading(fmt::format(

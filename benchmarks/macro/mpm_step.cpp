@@ -11,10 +11,10 @@
 #include "harness.hpp"
 #include "softgrain/contact/nlgs.hpp"
 #include "softgrain/experiment/sample.hpp"
-#include "softgrain/mpm/elastic_contacts.hpp"
-#include "softgrain/mpm/equilibrium.hpp"
-#include "softgrain/mpm/explicit_step.hpp"
-#include "softgrain/mpm/implicit_step.hpp"
+#include "softgrain/soft/elastic_contacts.hpp"
+#include "softgrain/soft/equilibrium.hpp"
+#include "softgrain/soft/explicit_step.hpp"
+#include "softgrain/soft/implicit_step.hpp"
 
 using namespace softgrain;
 using namespace softgrain::bench;

@@ -10,7 +10,7 @@
 
 #include "harness.hpp"
 #include "softgrain/experiment/sample.hpp"
-#include "softgrain/mpm/implicit_step.hpp"
+#include "softgrain/soft/implicit_step.hpp"
 
 using namespace softgrain;
 using namespace softgrain::bench;

@@ -5,8 +5,8 @@
 #include "harness.hpp"
 #include "packing.hpp"
 #include "softgrain/contact/nlgs.hpp"
-#include "softgrain/rigid/contact_system.hpp"
 #include "softgrain/rigid/narrow_sweeps.hpp"
+#include "softgrain/rigid/rigid_contact_system.hpp"
 
 using namespace softgrain;
 using namespace softgrain::bench;

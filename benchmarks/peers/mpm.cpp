@@ -14,9 +14,9 @@
 #include "peers/geomechanics_mpm.hpp"
 #include "peers/vibrating_blocks.hpp"
 #include "softgrain/core/error.hpp"
-#include "softgrain/mpm/explicit_step.hpp"
-#include "softgrain/mpm/implicit_step.hpp"
-#include "softgrain/mpm/updated_lagrangian.hpp"
+#include "softgrain/lattice/updated_lagrangian.hpp"
+#include "softgrain/soft/explicit_step.hpp"
+#include "softgrain/soft/implicit_step.hpp"
 
 using namespace softgrain;
 using namespace softgrain::bench;

@@ -17,7 +17,7 @@
 #include "packing.hpp"
 #include "softgrain/contact/nlgs.hpp"
 #include "softgrain/contact/residual.hpp"
-#include "softgrain/rigid/contact_system.hpp"
+#include "softgrain/rigid/rigid_contact_system.hpp"
 
 using namespace softgrain;
 using namespace softgrain::bench;

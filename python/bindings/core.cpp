@@ -21,7 +21,7 @@
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/run.hpp"
-#include "softgrain/io/case_file.hpp"
+#include "softgrain/io/case/case_file.hpp"
 #include "softgrain/observe/columns.hpp"
 
 namespace py = pybind11;

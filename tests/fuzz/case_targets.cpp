@@ -6,9 +6,9 @@
 
 #include "fuzz/targets.hpp"
 #include "softgrain/experiment/estimate.hpp"
-#include "softgrain/io/case_file.hpp"
-#include "softgrain/io/case_text.hpp"
-#include "softgrain/io/units.hpp"
+#include "softgrain/io/case/case_file.hpp"
+#include "softgrain/io/case/case_text.hpp"
+#include "softgrain/io/case/units.hpp"
 
 namespace softgrain::fuzz {
 namespace {

@@ -4,8 +4,8 @@
 #include "fuzz/memory_file.hpp"
 #include "fuzz/targets.hpp"
 #include "softgrain/core/error.hpp"
-#include "softgrain/io/fclib.hpp"
-#include "softgrain/io/hdf5_file.hpp"
+#include "softgrain/io/format/fclib.hpp"
+#include "softgrain/io/format/hdf5_file.hpp"
 
 namespace softgrain::fuzz {
 namespace {

@@ -8,10 +8,10 @@
 #include "fuzz/targets.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/create.hpp"
-#include "softgrain/io/case_file.hpp"
-#include "softgrain/io/run_json.hpp"
-#include "softgrain/io/series_writer.hpp"
-#include "softgrain/io/snapshot.hpp"
+#include "softgrain/io/case/case_file.hpp"
+#include "softgrain/io/format/snapshot.hpp"
+#include "softgrain/io/run/run_json.hpp"
+#include "softgrain/io/run/series_writer.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace softgrain::fuzz {

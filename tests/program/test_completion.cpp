@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "softgrain/io/schema.hpp"
+#include "softgrain/io/case/schema.hpp"
 #include "support/subprocess.hpp"
 #include "support/temporary_directory.hpp"
 

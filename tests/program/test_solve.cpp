@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "softgrain/contact/contact_problem.hpp"
-#include "softgrain/io/fclib.hpp"
+#include "softgrain/io/format/fclib.hpp"
 #include "support/subprocess.hpp"
 #include "support/temporary_directory.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "reliability/tiny_cases.hpp"
 #include "softgrain/core/error.hpp"
-#include "softgrain/io/snapshot.hpp"
+#include "softgrain/io/format/snapshot.hpp"
 
 namespace fs = std::filesystem;
 using namespace softgrain::test;

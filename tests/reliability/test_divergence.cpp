@@ -5,9 +5,9 @@
 
 #include "reliability/tiny_cases.hpp"
 #include "softgrain/core/error.hpp"
-#include "softgrain/mpm/implicit_step.hpp"
-#include "softgrain/mpm/updated_lagrangian.hpp"
+#include "softgrain/lattice/updated_lagrangian.hpp"
 #include "softgrain/rigid/step.hpp"
+#include "softgrain/soft/implicit_step.hpp"
 #include "support/soft_grains.hpp"
 
 using namespace softgrain;

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "reliability/tiny_cases.hpp"
-#include "softgrain/io/snapshot.hpp"
+#include "softgrain/io/format/snapshot.hpp"
 
 using namespace softgrain::test;
 

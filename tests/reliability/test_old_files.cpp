@@ -5,8 +5,8 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/create.hpp"
-#include "softgrain/io/case_file.hpp"
-#include "softgrain/io/snapshot.hpp"
+#include "softgrain/io/case/case_file.hpp"
+#include "softgrain/io/format/snapshot.hpp"
 
 namespace fs = std::filesystem;
 

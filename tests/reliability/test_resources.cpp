@@ -2,7 +2,7 @@
 
 #include "reliability/tiny_cases.hpp"
 #include "softgrain/core/error.hpp"
-#include "softgrain/io/resources.hpp"
+#include "softgrain/io/run/resources.hpp"
 
 using namespace softgrain::test;
 

@@ -2,7 +2,7 @@
 #include <utility>
 #include <vector>
 
-#include "softgrain/mpm/outline_contacts.hpp"
+#include "softgrain/soft/outline_contacts.hpp"
 #include "support/soft_grains.hpp"
 
 namespace softgrain::test {

@@ -1,9 +1,9 @@
 #pragma once
 #include <vector>
 
-#include "softgrain/rigid/contact_system.hpp"
 #include "softgrain/rigid/neighbours.hpp"
 #include "softgrain/rigid/particles.hpp"
+#include "softgrain/rigid/rigid_contact_system.hpp"
 #include "support/dimensions.hpp"
 #include "support/random_numbers.hpp"
 

@@ -9,9 +9,9 @@
 
 #include "softgrain/bpm/bonded_grains.hpp"
 #include "softgrain/experiment/create.hpp"
-#include "softgrain/mpm/elastic_grains.hpp"
-#include "softgrain/mpm/lattice_grains.hpp"
+#include "softgrain/lattice/lattice_grains.hpp"
 #include "softgrain/observe/columns.hpp"
+#include "softgrain/soft/elastic_grains.hpp"
 
 namespace softgrain::test {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "softgrain/geometry/wall.hpp"
-#include "softgrain/mpm/soft_grains.hpp"
+#include "softgrain/soft/soft_grains.hpp"
 #include "support/random_numbers.hpp"
 
 namespace softgrain::test {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "softgrain/contact/contact_problem.hpp"
-#include "softgrain/io/fclib.hpp"
+#include "softgrain/io/format/fclib.hpp"
 #include "support/contact_problems.hpp"
 
 using namespace softgrain;

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "softgrain/mpm/equilibrium.hpp"
-#include "softgrain/mpm/explicit_step.hpp"
-#include "softgrain/mpm/implicit_step.hpp"
+#include "softgrain/soft/equilibrium.hpp"
+#include "softgrain/soft/explicit_step.hpp"
+#include "softgrain/soft/implicit_step.hpp"
 #include "support/soft_grains.hpp"
 
 using namespace softgrain;

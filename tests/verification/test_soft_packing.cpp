@@ -7,8 +7,8 @@
 
 #include "softgrain/experiment/sample.hpp"
 #include "softgrain/geometry/polygon.hpp"
-#include "softgrain/mpm/explicit_step.hpp"
-#include "softgrain/mpm/implicit_step.hpp"
+#include "softgrain/soft/explicit_step.hpp"
+#include "softgrain/soft/implicit_step.hpp"
 #include "support/soft_grains.hpp"
 
 using namespace softgrain;

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "softgrain/mpm/implicit_step.hpp"
+#include "softgrain/soft/implicit_step.hpp"
 #include "support/soft_grains.hpp"
 
 using namespace softgrain;

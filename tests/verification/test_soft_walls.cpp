@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "softgrain/experiment/sample.hpp"
-#include "softgrain/mpm/explicit_step.hpp"
-#include "softgrain/mpm/implicit_step.hpp"
+#include "softgrain/soft/explicit_step.hpp"
+#include "softgrain/soft/implicit_step.hpp"
 #include "support/soft_grains.hpp"
 
 using namespace softgrain;
@@ -112,7 +112,7 @@ TEST_CASE("a frictionless wall keeps the spin of a disk, and turns a square") {
   CHECK(std::abs(missed_centre(disk, dt)) < 1e-4);
 
   const SoftGrains square({test::placed(test::square(4), R, {0, 0.7 * R}, {0, -1}, 0.3)},
-                          make_law("neo_hookean", E, nu), density);
+                          make_law(MaterialLaw::neo_hookean, E, nu), density);
   CHECK(std::abs(missed_centre(ImplicitDynamics(square, {test::floor_at(0)}, {}), dt)) > 0.1);
   CHECK(std::abs(missed_centre(ExplicitDynamics(square, {test::floor_at(0)}, {}),
                                stable_time_step(square, 0.5))) > 0.1);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "softgrain/mpm/updated_lagrangian.hpp"
+#include "softgrain/lattice/updated_lagrangian.hpp"
 
 using namespace softgrain;
 

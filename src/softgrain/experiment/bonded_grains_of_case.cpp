@@ -2,9 +2,10 @@
 #include <numbers>
 
 #include "softgrain/bpm/bonded_grains.hpp"
-#include "softgrain/experiment/bpm_sample.hpp"
+#include "softgrain/bpm/bonded_sample.hpp"
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
+#include "softgrain/experiment/sample.hpp"
 #include "softgrain/geometry/support.hpp"
 
 namespace softgrain {
@@ -66,7 +67,7 @@ BondedGrainsSetup setup_between_walls(const Case& c) {
 /// sigma_I = F0/<a0> is the same in every grain.
 BondedGrainsSetup setup_in_a_box(const Case& c) {
   const BoxSample box = sample_box(c);
-  BpmSample sample = fill_box(box, prepare_library(c), c);
+  BpmSample sample = fill_box(box, prepare_library(library_of(c)), library_of(c));
   BondedGrainsSetup setup{.particles = std::move(sample.particles),
                           .grain_radius = {},
                           .laws = {},

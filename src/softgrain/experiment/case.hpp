@@ -2,17 +2,17 @@
 #include <cstdint>
 #include <vector>
 
-#include "softgrain/experiment/diameters.hpp"
-#include "softgrain/experiment/placed_grain.hpp"
+#include "softgrain/lattice/contact_on.hpp"
+#include "softgrain/lattice/shape_functions.hpp"
 #include "softgrain/material/material_law.hpp"
 #include "softgrain/math/precision.hpp"
-#include "softgrain/mpm/contact_on.hpp"
-#include "softgrain/mpm/shape_functions.hpp"
 #include "softgrain/rigid/activation.hpp"
+#include "softgrain/sample/diameters.hpp"
+#include "softgrain/sample/placed_grain.hpp"
 
 namespace softgrain {
 
-// The choices of a case. Their words in case files: experiment/words.hpp.
+// The choices of a case. Their words in case files: io/case/words.hpp.
 
 enum class LoadingPath {
   diametral,   ///< one grain between two plates, the top one moves

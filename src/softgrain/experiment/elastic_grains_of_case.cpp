@@ -6,8 +6,8 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
-#include "softgrain/mpm/elastic_grains.hpp"
-#include "softgrain/mpm/lattice_grains.hpp"
+#include "softgrain/lattice/lattice_grains.hpp"
+#include "softgrain/soft/elastic_grains.hpp"
 
 namespace softgrain {
 namespace {

@@ -1,47 +1,12 @@
 #pragma once
-#include <cstdint>
-#include <vector>
-
+#include "softgrain/bpm/bonded_sample.hpp"
 #include "softgrain/experiment/case.hpp"
-#include "softgrain/experiment/diameters.hpp"
-#include "softgrain/experiment/placed_grain.hpp"
-#include "softgrain/geometry/box.hpp"
-#include "softgrain/math/vec.hpp"
+#include "softgrain/sample/box_sample.hpp"
 
 namespace softgrain {
 
-/// A box with corner (0, 0).
-struct BoxSample {
-  double width = 0, height = 0;  ///< [m]
-  std::vector<PlacedGrain> grains;
-};
-
-struct BoxSampleOptions {
-  int grains = 300;
-  DiameterLaw sizes{};
-  double packing_fraction = 0.7;  ///< sum pi R^2 over the box's area
-  double aspect = 1;              ///< width over height of the box
-  double clearance = 0.02;  ///< free distance round each grain, over its radius, where there is room for it
-  std::uint64_t seed = 1;
-};
-
-/// Random places without overlap: uniform at first, then pairs that overlap are pushed apart until none does.
-/// Where that finds no places it starts from others, then with a half and a quarter of the clearance, then
-/// with other diameters. The same seed gives the same bits. Raises UsageError, with the largest fraction that
-/// is found, if none of them works: few grains do not fill 0.7 of every box (two equal ones fill 0.54 of a
-/// square).
-BoxSample sample_box(const BoxSampleOptions& options);
-
-/// The largest packing fraction, in hundredths, at which sample_box is sure to find places for these grains,
-/// up to that of the options. O(grains), and less than a second for 300.
-double largest_packing_fraction(const BoxSampleOptions& options);
-
 /// The sample of a case, the same for every model: its placed grains, or random ones.
 BoxSample sample_box(const Case& the_case);
-
-/// The walls of a box with its corner at (0, 0); those below and above one grain [m].
-Box<2> walls_of(const BoxSample& sample);
-Box<2> walls_at(double low, double high);
 
 /// The law of the diameters of a case; shares of area become numbers.
 DiameterLaw diameter_law(const Case::Sample& sample);
@@ -51,17 +16,7 @@ DiameterLaw diameter_law(const Case::Sample& sample);
 /// whose corner comes to (0, 0)), packing fraction and aspect.
 Case complete_sample(Case the_case);
 
-/// Placed grains may overlap by this share of the smaller radius, and reach that far beyond a wall.
-inline constexpr double largest_placed_overlap = 0.01;
-
-/// A placed grain that cannot be where it is.
-struct Misplaced {
-  int grain;
-  int other;     ///< which it overlaps; -1: it is outside the box
-  double depth;  ///< of the overlap, or how far it is outside [m]
-};
-
-/// All of them, by grain. O(n).
-std::vector<Misplaced> misplaced_grains(const BoxSample& sample);
+/// The aggregates of a packing of bonded grains.
+AggregateLibrary library_of(const Case& the_case);
 
 }  // namespace softgrain

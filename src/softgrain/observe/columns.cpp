@@ -111,7 +111,7 @@ constexpr std::array table{
     Column{"sweeps", "", every_run, "of the contact solver, mean of a step since the row before", MEANS(sweeps)},
     Column{"residual_mean", "", every_run, "violation of the law of contact (22): mean of the steps' means", MEANS(residual_mean)},
     Column{"residual_max", "", every_run, "worst contact of the worst step", MEANS(residual_max)},
-    Column{"overlap_mean", "", every_run, "overlap of the contacts that carry impulse, over the mean radius: mean of the steps' means", MEANS(overlap_mean)},
+    Column{"overlap_mean", "", every_run, "overlap of the contacts that carry impulse, over the mean radius of the primaries (bpm) or the smallest radius of the grains (mpm): mean of the steps' means", MEANS(overlap_mean)},
     Column{"overlap_max", "", every_run, "worst contact of the worst step", MEANS(overlap_max)},
     Column{"wall_seconds", "s", every_run, "wall time since the run began, all resumed parts together", MEANS(wall_seconds)},
 };

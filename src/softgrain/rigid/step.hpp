@@ -6,11 +6,11 @@
 
 #include "softgrain/contact/solver_options.hpp"
 #include "softgrain/contact/step_report.hpp"
-#include "softgrain/rigid/contact_system.hpp"
 #include "softgrain/rigid/contacts.hpp"
 #include "softgrain/rigid/narrow_sweeps.hpp"
 #include "softgrain/rigid/neighbours.hpp"
 #include "softgrain/rigid/particles.hpp"
+#include "softgrain/rigid/rigid_contact_system.hpp"
 
 namespace softgrain {
 

@@ -1,4 +1,4 @@
-#include "softgrain/experiment/diameters.hpp"
+#include "softgrain/sample/diameters.hpp"
 
 #include <doctest/doctest.h>
 

@@ -120,6 +120,24 @@ TEST_CASE("the coordination number of a packing is that of the pairs that carry 
   CHECK(value_of(test::next_row(*simulation), "z") == doctest::Approx(sides / 5.0));
 }
 
+TEST_CASE("the mean overlap of elastic contacts is measured, and never above the worst") {
+  for (const Integrator integrator : {Integrator::backward_euler, Integrator::symplectic_euler}) {
+    CAPTURE(integrator);
+    Case c = small_packing(integrator);
+    c.mpm.tolerance = 1e-3;  // deep enough to be seen
+    const auto simulation = create_simulation(c);
+    double mean = 0, worst = 0;
+    while (!simulation->finished()) {
+      const StepReport report = simulation->step();
+      CHECK(report.overlap_mean <= report.overlap_max);
+      mean = std::max(mean, report.overlap_mean);
+      worst = std::max(worst, report.overlap_max);
+    }
+    CHECK(mean > 1e-3 * worst);
+    CHECK(worst > 0);
+  }
+}
+
 TEST_CASE("one grain between plates starts at rest between them, and turns back where asked") {
   const auto simulation = create_simulation(one_grain());
   const auto start = test::next_row(*simulation);

@@ -1,4 +1,4 @@
-#include "softgrain/mpm/soft_view.hpp"
+#include "softgrain/soft/soft_view.hpp"
 #include "support/simulations.hpp"
 
 #include <doctest/doctest.h>

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "softgrain/experiment/create.hpp"
-#include "softgrain/io/case_file.hpp"
-#include "softgrain/io/case_text.hpp"
+#include "softgrain/io/case/case_file.hpp"
+#include "softgrain/io/case/case_text.hpp"
 #include "support/temporary_directory.hpp"
 
 using namespace softgrain;

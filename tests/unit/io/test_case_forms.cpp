@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "softgrain/io/case_file.hpp"
-#include "softgrain/io/case_text.hpp"
+#include "softgrain/io/case/case_file.hpp"
+#include "softgrain/io/case/case_text.hpp"
 
 using namespace softgrain;
 

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "softgrain/experiment/sample.hpp"
-#include "softgrain/io/case_file.hpp"
-#include "softgrain/io/case_forms.hpp"
-#include "softgrain/io/case_relations.hpp"
-#include "softgrain/io/case_schema.hpp"
-#include "softgrain/io/case_text.hpp"
-#include "softgrain/io/case_value.hpp"
-#include "softgrain/io/schema.hpp"
+#include "softgrain/io/case/case_file.hpp"
+#include "softgrain/io/case/case_forms.hpp"
+#include "softgrain/io/case/case_relations.hpp"
+#include "softgrain/io/case/case_schema.hpp"
+#include "softgrain/io/case/case_text.hpp"
+#include "softgrain/io/case/case_value.hpp"
+#include "softgrain/io/case/schema.hpp"
 #include "support/temporary_directory.hpp"
 
 using namespace softgrain;

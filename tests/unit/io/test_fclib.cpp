@@ -7,8 +7,8 @@
 #include <variant>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/io/fclib.hpp"
-#include "softgrain/io/hdf5_file.hpp"
+#include "softgrain/io/format/fclib.hpp"
+#include "softgrain/io/format/hdf5_file.hpp"
 #include "support/contact_problems.hpp"
 #include "support/temporary_directory.hpp"
 

@@ -6,8 +6,8 @@
 
 #include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/sample.hpp"
-#include "softgrain/io/case_file.hpp"
-#include "softgrain/io/case_text.hpp"
+#include "softgrain/io/case/case_file.hpp"
+#include "softgrain/io/case/case_text.hpp"
 #include "support/simulations.hpp"
 #include "support/temporary_directory.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "softgrain/io/progress.hpp"
+#include "softgrain/io/run/progress.hpp"
 
 using namespace softgrain;
 

@@ -1,4 +1,4 @@
-#include "softgrain/io/reference_pages.hpp"
+#include "softgrain/io/page/reference_pages.hpp"
 
 #include <doctest/doctest.h>
 

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/io/compress.hpp"
-#include "softgrain/io/report_chains.hpp"
-#include "softgrain/io/report_codec.hpp"
-#include "softgrain/io/report_frame.hpp"
-#include "softgrain/io/report_page.hpp"
-#include "softgrain/io/report_run.hpp"
-#include "softgrain/io/snapshot.hpp"
+#include "softgrain/io/format/compress.hpp"
+#include "softgrain/io/format/snapshot.hpp"
+#include "softgrain/io/page/report_chains.hpp"
+#include "softgrain/io/page/report_codec.hpp"
+#include "softgrain/io/page/report_frame.hpp"
+#include "softgrain/io/page/report_page.hpp"
+#include "softgrain/io/page/report_run.hpp"
 #include "support/temporary_directory.hpp"
 
 using namespace softgrain;

@@ -1,4 +1,4 @@
-#include "softgrain/io/report_frame.hpp"
+#include "softgrain/io/page/report_frame.hpp"
 
 #include <doctest/doctest.h>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/io/run_directory.hpp"
+#include "softgrain/io/run/run_directory.hpp"
 #include "support/temporary_directory.hpp"
 
 using namespace softgrain;

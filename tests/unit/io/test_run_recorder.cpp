@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/io/hdf5_file.hpp"
-#include "softgrain/io/run_recorder.hpp"
+#include "softgrain/io/format/hdf5_file.hpp"
+#include "softgrain/io/run/run_recorder.hpp"
 #include "support/fake_simulation.hpp"
 #include "support/file_size_limit.hpp"
 #include "support/temporary_directory.hpp"

@@ -1,4 +1,4 @@
-#include "softgrain/io/sample_file.hpp"
+#include "softgrain/io/case/sample_file.hpp"
 
 #include <doctest/doctest.h>
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "softgrain/io/case_file.hpp"
-#include "softgrain/io/case_text.hpp"
-#include "softgrain/io/case_value.hpp"
-#include "softgrain/io/schema.hpp"
-#include "softgrain/io/toml_document.hpp"
+#include "softgrain/io/case/case_file.hpp"
+#include "softgrain/io/case/case_text.hpp"
+#include "softgrain/io/case/case_value.hpp"
+#include "softgrain/io/case/schema.hpp"
+#include "softgrain/io/case/toml_document.hpp"
 #include "support/simulations.hpp"
 
 using namespace softgrain;

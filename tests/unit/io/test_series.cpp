@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/io/series_writer.hpp"
+#include "softgrain/io/run/series_writer.hpp"
 #include "support/file_size_limit.hpp"
 #include "support/temporary_directory.hpp"
 

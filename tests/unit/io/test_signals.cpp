@@ -5,7 +5,7 @@
 #include <csignal>
 #include <functional>
 
-#include "softgrain/io/signals.hpp"
+#include "softgrain/io/run/signals.hpp"
 
 using namespace softgrain;
 

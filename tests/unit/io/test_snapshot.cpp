@@ -6,9 +6,9 @@
 #include <random>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/io/file.hpp"
-#include "softgrain/io/hdf5_file.hpp"
-#include "softgrain/io/snapshot.hpp"
+#include "softgrain/io/format/file.hpp"
+#include "softgrain/io/format/hdf5_file.hpp"
+#include "softgrain/io/format/snapshot.hpp"
 #include "support/file_size_limit.hpp"
 #include "support/temporary_directory.hpp"
 

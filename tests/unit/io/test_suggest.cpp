@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "softgrain/io/suggest.hpp"
+#include "softgrain/io/case/suggest.hpp"
 
 using namespace softgrain;
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <variant>
 
-#include "softgrain/io/toml_document.hpp"
+#include "softgrain/io/case/toml_document.hpp"
 
 using namespace softgrain;
 

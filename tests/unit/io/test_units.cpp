@@ -5,7 +5,7 @@
 #include <string>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/io/units.hpp"
+#include "softgrain/io/case/units.hpp"
 
 using namespace softgrain;
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "softgrain/io/verdict.hpp"
+#include "softgrain/io/run/verdict.hpp"
 
 using namespace softgrain;
 

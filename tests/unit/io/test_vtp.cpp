@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string>
 
-#include "softgrain/io/vtp_writer.hpp"
+#include "softgrain/io/format/vtp_writer.hpp"
 
 using namespace softgrain;
 

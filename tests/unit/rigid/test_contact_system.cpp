@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "softgrain/rigid/contact_system.hpp"
+#include "softgrain/rigid/rigid_contact_system.hpp"
 #include "support/random_bodies.hpp"
 
 using namespace softgrain;

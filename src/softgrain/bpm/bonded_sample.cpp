@@ -1,0 +1,135 @@
+#include "softgrain/bpm/bonded_sample.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/geometry/cell_grid.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Radius over the smallest one for which the k-th aggregate of the library is made: the middles of equal
+/// shares of the radii, or the diameters of a list in turn.
+double size_of(const AggregateLibrary& c, int k) {
+  if (!c.equal_size) return 1;
+  const double ratio = c.largest / c.smallest;
+  if (c.diameters.empty()) return 1 + (ratio - 1) * (k + 0.5) / c.count;
+  return c.diameters[k % c.diameters.size()] / c.smallest;
+}
+
+/// The next of the aggregates that are nearest in size to a grain of this radius.
+int nearest_in_size(const AggregateLibrary& c, int grain, double radius) {
+  const auto distance = [&](int k) { return std::abs(size_of(c, k) - 2 * radius / c.smallest); };
+  std::vector<int> nearest{0};
+  for (int k = 1; k < c.count; ++k) {
+    const double nearer = distance(nearest.front()) - distance(k);
+    if (nearer > 0) nearest.clear();
+    if (nearer >= 0) nearest.push_back(k);
+  }
+  return nearest[grain % nearest.size()];
+}
+
+/// Which aggregate a grain gets: the next one, or that whose number of primaries fits its radius.
+int choice_of(const AggregateLibrary& c, int grain, double radius) {
+  if (!c.equal_size) return grain % c.count;
+  if (!c.diameters.empty()) return nearest_in_size(c, grain, radius);
+  const double smallest = c.smallest / 2, largest = c.largest / 2;
+  if (!(largest > smallest)) return 0;
+  const double share = (radius - smallest) / (largest - smallest);
+  return std::clamp(static_cast<int>(share * c.count), 0, c.count - 1);
+}
+
+/// Moves grains as wholes out of the walls and out of each other once; returns the largest overlap met [m].
+double push_apart(RigidParticles<2>& particles, std::span<Vec<2>> shift, double widest) {
+  double worst = 0;
+  std::vector<Vec<2>> push(shift.size());
+  std::vector<double> deepest(shift.size(), 0);  // of a grain's overlaps: the one that moves it
+  const auto meet = [&](int grain, double overlap, const Vec<2>& away) {
+    worst = std::max(worst, overlap);
+    if (overlap <= deepest[grain]) return;
+    deepest[grain] = overlap;
+    push[grain] = overlap * away;
+  };
+  const auto& x = particles.position;
+  const auto& R = particles.radius;
+  for (int i = 0; i < particles.size(); ++i)
+    for (const Wall<2>& wall : particles.walls)
+      meet(particles.grain[i], R[i] - dot(x[i] - wall.point, wall.normal), wall.normal);
+  CellGrid<2>(x, 2 * widest).for_each_close_pair([&](int i, int j) {
+    const int a = particles.grain[i], b = particles.grain[j];
+    if (a == b) return;
+    const Vec<2> d = x[j] - x[i];
+    const double r = norm(d), overlap = R[i] + R[j] - r;
+    if (!(overlap > 0) || r == 0) return;
+    meet(a, overlap, (-0.6 / r) * d);
+    meet(b, overlap, (0.6 / r) * d);
+  });
+  for (std::size_t g = 0; g < shift.size(); ++g) shift[g] += push[g];
+  for (int i = 0; i < particles.size(); ++i) particles.position[i] += push[particles.grain[i]];
+  return worst;
+}
+
+/// Until no overlap is worth a tenth of a per cent of a primary's radius.
+double separate_grains(BpmSample& sample, const BoxSample& box) {
+  std::vector<Vec<2>> shift(box.grains.size());
+  const auto& radius = sample.particles.radius;
+  const double widest = *std::max_element(radius.begin(), radius.end());
+  const double tolerance = 1e-3 * *std::min_element(radius.begin(), radius.end());
+  constexpr int most_passes = 5000;
+  for (int pass = 0; push_apart(sample.particles, shift, widest) > tolerance; ++pass)
+    require(pass < most_passes,
+            "no places without overlap for {} grains of primaries; use a smaller sample.packing_fraction",
+            box.grains.size());
+  double furthest = 0;
+  for (std::size_t g = 0; g < shift.size(); ++g)
+    furthest = std::max(furthest, norm(shift[g]) / box.grains[g].radius);
+  return furthest;
+}
+
+}  // namespace
+
+std::vector<Aggregate> prepare_library(const AggregateLibrary& c) {
+  std::vector<Aggregate> library;
+  for (int k = 0; k < c.count; ++k) {
+    const double size = size_of(c, k);
+    library.push_back(
+        prepare_aggregate({.primaries = static_cast<int>(std::lround(c.primaries * size * size)),
+                           .size_ratio = c.size_ratio,
+                           .gamma = c.gamma,
+                           .seed = c.seed + (static_cast<std::uint64_t>(k) << 32)}));
+  }
+  return library;
+}
+
+BpmSample fill_box(const BoxSample& box, const std::vector<Aggregate>& library, const AggregateLibrary& c) {
+  BpmSample sample;
+  std::vector<Vec<2>> position;
+  std::vector<double> radius, mass;
+  std::vector<int> grain_of;
+  for (int g = 0; g < static_cast<int>(box.grains.size()); ++g) {
+    const PlacedGrain& grain = box.grains[g];
+    const Aggregate& aggregate = library[choice_of(c, g, grain.radius)];
+    const Vec<2> along{std::cos(grain.angle), std::sin(grain.angle)};
+    double squares = 0;
+    for (const double r : aggregate.radius) squares += r * r;
+    sample.begin.push_back(static_cast<int>(position.size()));
+    sample.mean_distance.push_back(grain.radius * aggregate.mean_distance);
+    for (std::size_t i = 0; i < aggregate.radius.size(); ++i) {
+      const Vec<2>& X = aggregate.position[i];
+      position.push_back(grain.centre + grain.radius * (X[0] * along + X[1] * perpendicular(along)));
+      radius.push_back(grain.radius * aggregate.radius[i]);
+      mass.push_back(c.density * std::numbers::pi * radius.back() * radius.back() / squares);
+      grain_of.push_back(g);
+    }
+  }
+  sample.begin.push_back(static_cast<int>(position.size()));
+  sample.particles =
+      rigid_particles<2>(std::move(position), std::move(radius), std::move(mass), walls_of(box).walls);
+  sample.particles.grain = std::move(grain_of);
+  sample.displaced = separate_grains(sample, box);
+  return sample;
+}
+
+}  // namespace softgrain

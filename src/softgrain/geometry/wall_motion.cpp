@@ -1,0 +1,35 @@
+#include "softgrain/geometry/wall_motion.hpp"
+
+#include "softgrain/core/error.hpp"
+
+namespace softgrain {
+
+void check_wall_motion(std::span<const Wall<2>> walls, double dt, double smallest_radius) {
+  for (std::size_t a = 0; a < walls.size(); ++a) {
+    if (const double motion = dt * norm(walls[a].velocity); !(motion <= smallest_radius / 10))
+      throw NumericalError(fmt::format(
+          "wall {} moves by {:.3g} m in a step, more than a tenth of the smallest radius {:.3g} m; use a "
+          "smaller time step or a slower wall",
+          a, motion, smallest_radius));
+    for (std::size_t b = 0; b < a; ++b)
+      if (dot(walls[a].normal, walls[b].normal) < -0.5 &&
+          !(dot(walls[a].point - walls[b].point, walls[b].normal) > 0))
+        throw NumericalError(fmt::format(
+            "walls {} and {} have met, with grains between them; use a smaller time step or strain", b, a));
+  }
+}
+
+AffineMotion::AffineMotion(std::span<const Wall<2>> walls) {
+  constexpr double along = 1 - 1e-9;  // the axis
+  for (int d = 0; d < 2; ++d)
+    for (const Wall<2>& low : walls)
+      for (const Wall<2>& high : walls) {
+        const double distance = high.point[d] - low.point[d];
+        if (low.normal[d] < along || high.normal[d] > -along || !(distance > 0)) continue;
+        origin[d] = low.point[d];
+        velocity[d] = low.velocity[d];
+        rate[d] = (high.velocity[d] - low.velocity[d]) / distance;
+      }
+}
+
+}  // namespace softgrain

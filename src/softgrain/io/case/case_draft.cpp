@@ -1,0 +1,39 @@
+#include "softgrain/io/case/case_draft.hpp"
+
+#include <fmt/core.h>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/io/case/case_value.hpp"
+
+namespace softgrain {
+
+void CaseDraft::add(Origin origin, std::string message) {
+  constexpr std::size_t most = 100;
+  issues.push_back({origin, std::move(message)});
+  if (issues.size() == most) throw TooManyIssues{};
+}
+
+void CaseDraft::give(const Key& key, const std::string& name, const TomlValue& value, Origin origin) {
+  if (origin.set < 0) {
+    const auto [other, first] = names_.emplace(key.name, name);
+    if (!first)
+      return add(origin,
+                 fmt::format("'{}' says again what '{}' says: give one of them", name, other->second));
+  }
+  origins[key.name] = origin;
+  try {
+    Key named = key;
+    named.name = name;
+    assign(the_case, named, value);
+  } catch (const UsageError& error) {
+    if (value.at.line > 0) origin.at = value.at;
+    add(origin, error.what());
+    invalid.insert(key.name);
+  }
+}
+
+void CaseDraft::give_number(const std::string& key, double number, const std::string& name, Origin origin) {
+  give(*find_key(key), name, {number, {}}, origin);
+}
+
+}  // namespace softgrain

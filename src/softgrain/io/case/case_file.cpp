@@ -1,0 +1,240 @@
+#include "softgrain/io/case/case_file.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+
+#include "softgrain/experiment/sample.hpp"
+#include "softgrain/io/case/case_relations.hpp"
+#include "softgrain/io/case/case_value.hpp"
+#include "softgrain/io/case/form_reader.hpp"
+#include "softgrain/io/case/placement.hpp"
+#include "softgrain/io/case/schema.hpp"
+#include "softgrain/io/case/suggest.hpp"
+#include "softgrain/io/case/toml_document.hpp"
+#include "softgrain/io/case/words.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Collects every error of a file and its overrides, and fills in the case on the way.
+class CaseReader {
+ public:
+  CaseReader(std::string_view text, const std::string& name, const std::vector<std::string>& sets)
+      : sources_{{name, std::string(text)}}, sets_(sets) {}
+
+  CaseReading read() {
+    try {
+      read_file_text();
+      forms_.finish_file();
+      for (std::size_t i = 0; i < sets_.size(); ++i) read_set(static_cast<int>(i));
+      settle_time_step();
+      given_ = draft_.the_case;
+      const PlacedLines lines = place_grains(forms_, draft_, sources_);
+      draft_.the_case = complete_sample(draft_.the_case);
+      check_placement(draft_, lines);
+      check_relations();
+    } catch (const TooManyIssues&) {
+    }
+    if (!draft_.issues.empty()) throw CaseFileError(report(draft_.issues, sources_, sets_));
+    return {draft_.the_case, without_effect(), draft_.notes};
+  }
+
+ private:
+  /// A default that the file repeats is no wish: `softgrain new --all` and resolved cases write every key.
+  /// Nor is what a sample's file or list says anyway.
+  std::vector<std::string> without_effect() {
+    std::vector<std::string> names;
+    for (const Key& key : case_keys()) {
+      const auto at = draft_.origins.find(key.name);
+      if (at == draft_.origins.end() || key.acts.covers(draft_.the_case)) continue;
+      const std::string value = si_value(given_, key), held = si_value(draft_.the_case, key);
+      const bool repeats = value == si_value(Case{}, key) || (is_derived(key) && value == held);
+      if (at->second.set >= 0 || !repeats) names.push_back(key.name);
+    }
+    return names;
+  }
+
+  bool is_derived(const Key& key) const {
+    const Case::Sample& sample = draft_.the_case.sample;
+    if (sample.placed.empty() && sample.sizes != SizeLaw::list) return false;
+    return key.name == "sample.grains" || key.name == "sample.packing_fraction" ||
+           key.name == "sample.aspect" || key.name == "sample.smallest_diameter" ||
+           key.name == "sample.largest_diameter";
+  }
+
+  /// A line that is no TOML is reported and left out, so that one slip of the pen does not hide the other
+  /// errors.
+  void read_file_text() {
+    std::string text = sources_.front().text;
+    for (int attempt = 0; attempt < 20; ++attempt) {
+      try {
+        for (const TomlMember& member : parse_toml(text)) read_table(member);
+        return;
+      } catch (const TomlError& error) {
+        const std::string_view line = line_of(text, error.at.line);
+        draft_.add({.at = error.at}, error.what() + quotes_missing(line, error.what()));
+        if (line.starts_with('[') || line.find('=') == std::string_view::npos) return;
+        text.replace(static_cast<std::size_t>(line.data() - text.data()), line.size(), line.size(), ' ');
+      }
+    }
+  }
+
+  /// The remedy for `radius = 5 mm`.
+  static std::string quotes_missing(std::string_view line, std::string_view message) {
+    if (!message.starts_with("expected")) return "";
+    const std::size_t value = line.find_first_not_of(" \t", line.find('=') + 1);
+    if (value == std::string_view::npos || !std::isdigit(static_cast<unsigned char>(line[value]))) return "";
+    return "; a quantity stands in quotes, as in \"5 mm\"";
+  }
+
+  void read_table(const TomlMember& member) {
+    const Origin origin{.at = member.at};
+    if (contains(form_tables(), member.key)) return forms_.read_tables(member.key, member.value, origin);
+    const auto* entries = std::get_if<TomlValue::Table>(&member.value.content);
+    if (entries == nullptr) {
+      draft_.add(origin, contains(case_tables(), member.key)
+                             ? fmt::format("'{}' is a table: write [{}]", member.key, member.key)
+                             : unknown_key(member.key));
+    } else if (!contains(case_tables(), member.key)) {
+      draft_.add(origin,
+                 fmt::format("unknown table '{}'{}", member.key, did_you_mean(member.key, table_names())));
+    } else {
+      for (const TomlMember& entry : *entries)
+        read_key(member.key + "." + entry.key, entry.value, {.at = entry.at});
+    }
+  }
+
+  void read_set(int i) {
+    const std::string& argument = sets_[static_cast<std::size_t>(i)];
+    const auto equals = argument.find('=');
+    if (equals == std::string::npos)
+      return draft_.add({.set = i}, "expected key=value, as in time.step=0.5e-6");
+    std::string name = argument.substr(0, equals);
+    name.erase(name.find_last_not_of(' ') + 1);
+    read_key(name, value_of(argument.substr(equals + 1)), {.set = i});
+  }
+
+  /// TOML where it is TOML, otherwise the text itself: 0.05 us needs no quotes.
+  static TomlValue value_of(const std::string& text) {
+    try {
+      TomlValue::Table document = parse_toml("value = " + text);
+      if (document.size() == 1 && document.front().key == "value") return document.front().value;
+    } catch (const TomlError&) {
+    }
+    return {text, {}};
+  }
+
+  void read_key(const std::string& name, const TomlValue& value, Origin origin) {
+    if (name == "mpm.time_step") return read_old_step(value, origin);
+    if (const Key* key = find_key(name)) return draft_.give(*key, name, value, origin);
+    if (!forms_.read_key(name, value, origin)) draft_.add(origin, unknown_key(name));
+  }
+
+  /// Before there was one key for all models, elastic grains had their own.
+  void read_old_step(const TomlValue& value, Origin origin) {
+    Key key = *find_key("time.step");
+    key.name = "mpm.time_step";
+    Case scratch;
+    try {
+      assign(scratch, key, value);
+      old_step_ = scratch.time.step;
+      old_step_origin_ = origin;
+    } catch (const UsageError& error) {
+      if (value.at.line > 0) origin.at = value.at;
+      draft_.add(origin, error.what());
+    }
+  }
+
+  /// Where the old key is given, time.step of the file was that of bonded grains alone.
+  void settle_time_step() {
+    if (!old_step_) return;
+    Case& c = draft_.the_case;
+    const double step_given = c.time.step;
+    const auto step = draft_.origins.find("time.step");
+    const bool is_newer =
+        step != draft_.origins.end() && step->second > old_step_origin_ && step->second.set >= 0;
+    const bool counts = c.experiment.model == GrainModel::mpm && !is_newer;
+    if (counts) {
+      c.time.step = *old_step_;
+      draft_.origins["time.step"] = old_step_origin_;
+    }
+    if (counts && step_given != 0 && step_given != *old_step_)
+      draft_.notes.push_back(
+          "note: time.step has no effect beside mpm.time_step, its old name: leave that out");
+    if (*old_step_ == 0 && old_step_origin_.set < 0) return;  // as files of former versions repeat it
+    Case now;
+    now.time.step = *old_step_;
+    draft_.notes.push_back(fmt::format("note: mpm.time_step is an old name{}; write time.step = {}",
+                                       counts ? "" : " and has no effect here",
+                                       written_value(now, *find_key("time.step"))));
+  }
+
+  void check_relations() {
+    for (const Relation& relation : case_relations()) {
+      const auto is_invalid = [&](const std::string& key) { return !draft_.is_valid(key); };
+      if (std::any_of(relation.keys.begin(), relation.keys.end(), is_invalid)) continue;
+      const std::string message = relation.broken(draft_.the_case);
+      if (!message.empty()) draft_.add(last_origin(relation.keys), message);
+    }
+  }
+
+  Origin last_origin(const std::vector<std::string>& keys) const {
+    Origin last;
+    for (const std::string& key : keys)
+      if (const auto found = draft_.origins.find(key); found != draft_.origins.end())
+        last = std::max(last, found->second);
+    return last;
+  }
+
+  /// The nearest full name, or the key of this name in another table.
+  static std::string unknown_key(const std::string& name) {
+    const std::string short_name = name.substr(name.find('.') + 1);
+    for (const Key& key : case_keys())
+      if (key.short_name() == short_name)
+        return fmt::format("unknown key '{}'; did you mean '{}'?", name, key.name);
+    return fmt::format("unknown key '{}'{}", name, did_you_mean(name, key_names()));
+  }
+
+  static std::vector<std::string> table_names() {
+    std::vector<std::string> names;
+    for (const TableOfKeys& table : case_tables()) names.push_back(table.name);
+    for (const TableOfKeys& table : form_tables()) names.push_back(table.name);
+    return names;
+  }
+
+  static bool contains(const std::vector<TableOfKeys>& tables, const std::string& name) {
+    return std::ranges::find(tables, name, &TableOfKeys::name) != tables.end();
+  }
+
+  std::vector<Source> sources_;  // the case file, and the sample's
+  const std::vector<std::string>& sets_;
+  CaseDraft draft_;
+  FormReader forms_{draft_};
+  Case given_;  // before what follows from other keys was filled in
+  std::optional<double> old_step_;
+  Origin old_step_origin_;
+};
+
+}  // namespace
+
+Case parse_case(std::string_view text, const std::string& name, const std::vector<std::string>& sets) {
+  return CaseReader(text, name, sets).read().the_case;
+}
+
+CaseReading parse_case_with_notes(std::string_view text, const std::string& name,
+                                  const std::vector<std::string>& sets) {
+  return CaseReader(text, name, sets).read();
+}
+
+CaseReading read_case_with_notes(const std::string& path, const std::vector<std::string>& sets) {
+  return parse_case_with_notes(read_limited(path, "a case file"), path, sets);
+}
+
+Case read_case(const std::string& path, const std::vector<std::string>& sets) {
+  return parse_case(read_limited(path, "a case file"), path, sets);
+}
+
+}  // namespace softgrain

@@ -1,0 +1,104 @@
+#include "softgrain/io/case/case_forms.hpp"
+
+#include <algorithm>
+
+namespace softgrain {
+namespace {
+
+// clang-format off
+FormKey stands_for(std::string name, std::vector<std::string> keys, std::string_view text) {
+  return {std::move(name), Takes::as_key, std::move(keys), text};
+}
+FormKey word(std::string name, std::vector<std::string> words, std::vector<std::string> later, std::string_view text) {
+  return {std::move(name), Takes::word, {}, text, std::move(words), std::move(later)};
+}
+FormKey only(std::string name, std::string value, std::string_view text) {
+  return {std::move(name), Takes::only, {}, text, {std::move(value)}, {"others"}};
+}
+FormKey number(std::string name, std::string_view unit, Range range, std::string_view text) {
+  return {std::move(name), Takes::number, {}, text, {}, {}, unit, range};
+}
+
+std::vector<FormKey> all_forms() {
+  const Range any, positive{.low = 0, .without_low = true}, not_negative{.low = 0};
+  return {
+      only("experiment.dimension", "2", "dimensions of space"),
+
+      {"kind.name", Takes::text, {}, "name of the kind, for [[pair]] and the column kind of a sample's file"},
+      stands_for("kind.model", {"experiment.model"}, "model of these grains"),
+      stands_for("kind.number", {"sample.grains"}, "grains of this kind in the box"),
+      only("kind.share", "1", "share of the grains' area that this kind has"),
+      word("kind.shape", {"disk"}, {"ellipse", "polygon", "outline"}, "shape of the undeformed grain"),
+      stands_for("kind.density", {"grain.density"}, "density of the material"),
+      stands_for("kind.diameter", {"sample.smallest_diameter", "sample.largest_diameter"}, "diameter of all grains of this kind; a table for a law of diameters"),
+      stands_for("kind.diameter.distribution", {"sample.sizes"}, "law of the diameters; left out: list where there are values, lognormal where there is a median"),
+      stands_for("kind.diameter.smallest", {"sample.smallest_diameter"}, "smallest diameter, or lower cut-off"),
+      stands_for("kind.diameter.largest", {"sample.largest_diameter"}, "largest diameter, or upper cut-off"),
+      stands_for("kind.diameter.median", {"sample.median_diameter"}, "median of a lognormal law before it is cut off"),
+      stands_for("kind.diameter.deviation", {"sample.deviation"}, "standard deviation of ln d of a lognormal law before it is cut off"),
+      stands_for("kind.diameter.values", {"sample.diameters"}, "diameters of a list"),
+      stands_for("kind.diameter.shares", {"sample.shares"}, "share of the grains' area that each diameter of the list has"),
+      stands_for("kind.diameter.numbers", {"sample.numbers"}, "how many grains have each diameter of the list, in proportion"),
+      stands_for("kind.law.name", {"mpm.law"}, "elastic law of the material (mpm)"),
+      stands_for("kind.law.young_modulus", {"mpm.young_modulus"}, "Young's modulus (mpm)"),
+      stands_for("kind.law.poisson_ratio", {"mpm.poisson_ratio"}, "Poisson's ratio (mpm)"),
+      stands_for("kind.law.attraction", {"bpm.attraction"}, "attraction between touching primaries (bpm between plates)"),
+      stands_for("kind.law.cohesive_pressure", {"bpm.cohesive_pressure"}, "internal cohesive pressure (bpm in a box)"),
+      stands_for("kind.law.exponent", {"bpm.exponent"}, "exponent of the attraction (bpm)"),
+      stands_for("kind.law.inner_friction", {"bpm.inner_friction"}, "friction between primaries of one grain (bpm)"),
+      stands_for("kind.cells", {"mpm.cells"}, "resolution of a grain (mpm)"),
+      stands_for("kind.primaries", {"bpm.primaries"}, "resolution of a grain (bpm)"),
+
+      {"pair.between", Takes::texts, {}, "the two sides: names of kinds, or \"wall\""},
+      stands_for("pair.friction", {"contact.friction", "contact.wall_friction"}, "coefficient of friction mu between the two: of grains, or of a grain and a wall"),
+      only("pair.surface_energy", "0", "adhesion between the two"),
+
+      word("box.x", {"walls"}, {"periodic", "open"}, "what ends the box in x"),
+      word("box.y", {"walls"}, {"periodic", "open"}, "what ends the box in y"),
+
+      {"sample.file", Takes::text, {}, "a CSV file with the places of the grains, instead of random ones: see below; from the folder of the case file"},
+
+      {"stage.name", Takes::text, {}, "name of the stage"},
+      number("stage.yy.velocity", "m/s", any, "of lid and bottom towards each other; below 0: apart"),
+      number("stage.yy.stress", "MPa", positive, "vertical stress that is kept, compression positive, for until.time"),
+      number("stage.xx.velocity", "m/s", any, "of the side walls towards each other"),
+      word("stage.yy", {"rest"}, {}, "lid and bottom rest"),
+      word("stage.xx", {"rest"}, {}, "the side walls rest, as where nothing is said of them"),
+      number("stage.until.strain", "", not_negative, "compressive strain from the start of the run, as the column strain has it"),
+      number("stage.until.stress_yy", "MPa", positive, "vertical stress, compression positive"),
+      number("stage.until.packing_fraction", "", positive, "packing fraction Phi_0 of the undeformed grains"),
+      number("stage.until.overlap", "", positive, "mean overlap of primaries over their radius (bpm)"),
+      number("stage.until.time", "ms", positive, "time since the stage began, of a rest or a stress that is kept"),
+  };
+}
+// clang-format on
+
+}  // namespace
+
+const std::vector<FormKey>& form_keys() {
+  static const std::vector<FormKey> keys = all_forms();
+  return keys;
+}
+
+const std::vector<TableOfKeys>& form_tables() {
+  static const std::vector<TableOfKeys> tables{
+      {"kind",
+       "A kind of grains, instead of [grain], [sample] and the material's keys of [mpm] or [bpm]. One "
+       "today."},
+      {"pair", "What acts between two kinds, or a kind and the walls, instead of [contact]."},
+      {"stage", "A part of the loading path, one after the other, instead of [loading]."},
+  };
+  return tables;
+}
+
+const FormKey* find_form(std::string_view name) {
+  const auto found = std::ranges::find(form_keys(), name, &FormKey::name);
+  return found == form_keys().end() ? nullptr : &*found;
+}
+
+const std::vector<OldKey>& old_keys() {
+  static const std::vector<OldKey> keys{{"mpm.time_step", "time.step"}};
+  return keys;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,89 @@
+#include "softgrain/io/case/case_text.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "softgrain/io/case/case_value.hpp"
+#include "softgrain/io/case/schema.hpp"
+
+namespace softgrain {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// One grain of the paper, unloaded at its two strains.
+Case diametral(GrainModel model) {
+  Case c;
+  c.experiment.model = model;
+  c.loading.unload_at = {0.1, 0.3};
+  return c;
+}
+
+/// Grains, speed and packing fraction of the paper's packings.
+Case compaction(GrainModel model) {
+  Case c;
+  c.experiment = {.loading = LoadingPath::compaction, .model = model};
+  c.sample.grains = 300;
+  c.loading.wall_velocity = 5;
+  c.loading.max_strain = model == GrainModel::mpm ? 0.3 : 0.42;
+  if (model == GrainModel::mpm) return c;
+  c.loading.max_stress = 5e6;  // ten times the cohesive pressure: close packed
+  c.bpm.primaries = 200;
+  c.time.step = 0.1e-6;
+  return c;
+}
+
+}  // namespace
+
+std::string resolved_case_text(const Case& the_case) {
+  std::string text = "# Resolved case: every default filled in, SI units.\n";
+  for_each_key([&](const TableOfKeys& table) { text += fmt::format("\n[{}]\n", table.name); },
+               [&](const Key& key) {
+                 const std::string unit = si_unit_of(key);
+                 text += fmt::format("{} = {}{}\n", key.short_name(), si_value(the_case, key),
+                                     unit.empty() ? "" : "  # " + unit);
+               });
+  return text;
+}
+
+std::string case_json(const Case& the_case) {
+  Json tables = Json::object();
+  for_each_key(
+      [&](const TableOfKeys& table) { tables[table.name] = Json::object(); },
+      [&](const Key& key) { tables[key.table()][key.short_name()] = Json::parse(si_value(the_case, key)); });
+  return tables.dump(2);
+}
+
+std::string commented_case_text(const Case& the_case, Keys keys) {
+  std::string text =
+      "#:schema ./case.schema.json\n"
+      "# A softgrain case. Quantities are written with their unit, or as plain numbers in SI. What is left "
+      "out keeps its\n"
+      "# default. Check it with `softgrain check`, run it with `softgrain run`. 2D: per metre of depth.\n";
+  std::string heading;
+  for_each_key(
+      [&](const TableOfKeys& table) { heading = fmt::format("\n# {}\n[{}]\n", table.text, table.name); },
+      [&](const Key& key) {
+        if (keys == Keys::that_act && !key.acts.covers(the_case)) return;
+        text += std::exchange(heading, "");
+        text += fmt::format("# {} ({})\n{} = {}\n", key.text, accepted(key), key.short_name(),
+                            written_value(the_case, key));
+      });
+  return text;
+}
+
+const std::vector<CaseTemplate>& case_templates() {
+  static const std::vector<CaseTemplate> templates{
+      {"diametral-bpm", "one grain of rigid primary particles between two plates",
+       diametral(GrainModel::bpm)},
+      {"diametral-mpm", "one elastic grain between two plates", diametral(GrainModel::mpm)},
+      {"compaction-bpm", "300 grains of 200 primary particles in a box whose lid comes down",
+       compaction(GrainModel::bpm)},
+      {"compaction-mpm", "300 elastic grains in a box whose lid comes down", compaction(GrainModel::mpm)},
+  };
+  return templates;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,223 @@
+#include "softgrain/io/case/case_value.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <type_traits>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/io/case/suggest.hpp"
+#include "softgrain/io/case/units.hpp"
+
+namespace softgrain {
+namespace {
+
+/// A value as the user gave it, for messages.
+std::string shown(const TomlValue& value) {
+  const auto show = [](const auto& content) -> std::string {
+    using T = std::decay_t<decltype(content)>;
+    if constexpr (std::is_same_v<T, std::monostate>)
+      return "a date or time";
+    else if constexpr (std::is_same_v<T, std::string>)
+      return fmt::format("\"{}\"", content);
+    else if constexpr (std::is_same_v<T, TomlValue::Array>)
+      return "a list";
+    else if constexpr (std::is_same_v<T, TomlValue::Table>)
+      return "a table";
+    else if constexpr (std::is_same_v<T, double>)
+      return std::floor(content) == content && std::fabs(content) < 1e15 ? fmt::format("{:.1f}", content)
+                                                                         : fmt::format("{}", content);
+    else
+      return fmt::format("{}", content);
+  };
+  return std::visit(show, value.content);
+}
+
+[[noreturn]] void wrong_type(const Key& key, const TomlValue& value) {
+  throw UsageError(fmt::format("{} takes {}, as in {}; got {}", key.name, kind_in_words(key),
+                               written_value(Case{}, key), shown(value)));
+}
+
+void check_range(const Key& key, double number, const TomlValue& value) {
+  const Range& range = key.range;
+  if (range.contains(number)) return;
+  throw UsageError(fmt::format("{} = {} is out of range: it must be {}{}; the default is {}", key.name,
+                               shown(value),
+                               range.text().front() == '[' || range.text().front() == '(' ? "in " : "",
+                               range.text(), written_value(Case{}, key)));
+}
+
+double read_number(const Key& key, const TomlValue& value) {
+  double number = 0;
+  const auto* word = std::get_if<std::string>(&value.content);
+  if (word != nullptr && !key.zero_word.empty() && *word == key.zero_word) return 0;
+  if (const auto* i = std::get_if<std::int64_t>(&value.content)) {
+    number = static_cast<double>(*i);
+  } else if (const auto* x = std::get_if<double>(&value.content)) {
+    number = *x;
+  } else if (const auto* text = std::get_if<std::string>(&value.content)) {
+    try {
+      number = parse_quantity(*text, parse_unit(key.unit).dimension);
+    } catch (const UsageError& error) {
+      throw UsageError(fmt::format("{}: {}", key.name, error.what()));
+    }
+  } else {
+    wrong_type(key, value);
+  }
+  require(std::isfinite(number), "{} must be finite, got {}", key.name, number);
+  check_range(key, number, value);
+  return number;
+}
+
+template <class Integer>
+Integer read_integer(const Key& key, const TomlValue& value) {
+  const auto* i = std::get_if<std::int64_t>(&value.content);
+  if (i == nullptr) wrong_type(key, value);
+  check_range(key, static_cast<double>(*i), value);
+  require(*i >= std::numeric_limits<Integer>::min() && *i <= std::numeric_limits<Integer>::max(),
+          "{} = {} is out of range: it must be at most {}", key.name, *i,
+          std::numeric_limits<Integer>::max());
+  return static_cast<Integer>(*i);
+}
+
+/// [x, y, radius, angle] in SI.
+PlacedGrain read_grain(const Key& key, const TomlValue& value) {
+  const auto* items = std::get_if<TomlValue::Array>(&value.content);
+  std::vector<double> numbers;
+  if (items != nullptr)
+    for (const TomlValue& item : *items) numbers.push_back(read_number(key, item));
+  require(numbers.size() == 4 && numbers[2] > 0,
+          "{} takes four numbers for each grain, [x, y, radius, angle] in m and rad, with radius > 0; got {}",
+          key.name, items == nullptr ? shown(value) : fmt::format("[{}]", fmt::join(numbers, ", ")));
+  return {.centre = {numbers[0], numbers[1]}, .radius = numbers[2], .angle = numbers[3]};
+}
+
+struct Assign {
+  Case& the_case;
+  const Key& key;
+  const TomlValue& value;
+
+  void operator()(MemberOf<bool> member) const {
+    const bool* truth = std::get_if<bool>(&value.content);
+    if (truth == nullptr) wrong_type(key, value);
+    member(the_case) = *truth;
+  }
+  void operator()(MemberOf<int> member) const { member(the_case) = read_integer<int>(key, value); }
+  void operator()(MemberOf<std::int64_t> member) const {
+    member(the_case) = read_integer<std::int64_t>(key, value);
+  }
+  void operator()(MemberOf<double> member) const { member(the_case) = read_number(key, value); }
+  void operator()(const WordMember& member) const {
+    const auto* word = std::get_if<std::string>(&value.content);
+    if (word == nullptr) wrong_type(key, value);
+    if (!member.assign(the_case, *word))
+      throw UsageError(fmt::format("{} takes {}, got '{}'{}", key.name, kind_in_words(key), *word,
+                                   did_you_mean(*word, member.words())));
+  }
+  void operator()(MemberOf<std::vector<PlacedGrain>> member) const {
+    const auto* items = std::get_if<TomlValue::Array>(&value.content);
+    if (items == nullptr) wrong_type(key, value);
+    std::vector<PlacedGrain> grains;
+    for (const TomlValue& item : *items) grains.push_back(read_grain(key, item));
+    member(the_case) = std::move(grains);
+  }
+  void operator()(MemberOf<std::vector<double>> member) const {
+    const auto* items = std::get_if<TomlValue::Array>(&value.content);
+    if (items == nullptr) wrong_type(key, value);
+    std::vector<double> numbers;
+    for (const TomlValue& item : *items) numbers.push_back(read_number(key, item));
+    member(the_case) = std::move(numbers);
+  }
+};
+
+/// Shortest digits that read back bit for bit; 1e-5, not 1e-05.
+std::string shortest(double number) {
+  std::string text = fmt::format("{}", number);
+  if (text == "-0") return "-0.0";  // TOML's integers have no negative zero
+  const auto exponent = text.find('e');
+  if (exponent != std::string::npos && text[exponent + 2] == '0') text.erase(exponent + 2, 1);
+  return text;
+}
+
+/// Shortest digits; always with a point or an exponent, so that TOML reads it as a float (-0.0 stays -0.0).
+std::string float_text(double number) {
+  const std::string text = shortest(number);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+/// `"5 mm"` where that reads back as exactly this number, otherwise the number in SI.
+std::string quantity_text(double number, std::string_view unit) {
+  if (unit.empty()) return shortest(number);
+  const Unit parsed = parse_unit(unit);
+  const std::string text = fmt::format("{:.15g} {}", in_unit(number, parsed), unit);
+  return parse_quantity(text, parsed.dimension) == number ? fmt::format("\"{}\"", text)
+                                                          : fmt::format("{}", number);
+}
+
+/// Writes any value, floats by `write_number`.
+template <class WriteNumber>
+std::string text_of(const Case& the_case, const Key& key, const WriteNumber& write_number) {
+  Case copy = the_case;
+  const auto write = [&](const auto& member) -> std::string {
+    const auto& value = member(copy);
+    using T = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<T, double>) {
+      return value == 0 && !std::signbit(value) && !key.zero_word.empty()
+                 ? fmt::format("\"{}\"", key.zero_word)
+                 : write_number(value);
+    } else if constexpr (std::is_same_v<T, std::vector<double>>) {
+      std::vector<std::string> items;
+      for (const double item : value) items.push_back(write_number(item));
+      return fmt::format("[{}]", fmt::join(items, ", "));
+    } else if constexpr (std::is_same_v<T, std::vector<PlacedGrain>>) {
+      std::string list;
+      for (const PlacedGrain& grain : value)
+        list +=
+            fmt::format("{}\n  [{}, {}, {}, {}]", list.empty() ? "" : ",", write_number(grain.centre[0]),
+                        write_number(grain.centre[1]), write_number(grain.radius), write_number(grain.angle));
+      return fmt::format("[{}{}]", list, list.empty() ? "" : "\n");
+    } else if constexpr (std::is_same_v<T, std::string_view>) {
+      return fmt::format("\"{}\"", value);
+    } else {
+      return fmt::format("{}", value);
+    }
+  };
+  return std::visit(write, key.member);
+}
+
+}  // namespace
+
+void assign(Case& the_case, const Key& key, const TomlValue& value) {
+  std::visit(Assign{the_case, key, value}, key.member);
+}
+
+std::string kind_in_words(const Key& key) {
+  if (std::holds_alternative<MemberOf<bool>>(key.member)) return "true or false";
+  if (const auto* enumerated = std::get_if<WordMember>(&key.member))
+    return fmt::format("one of \"{}\"", fmt::join(enumerated->words(), "\", \""));
+  if (std::holds_alternative<MemberOf<double>>(key.member))
+    return (key.zero_word.empty() ? "" : fmt::format("\"{}\" or ", key.zero_word)) +
+           in_words(parse_unit(key.unit).dimension);
+  if (std::holds_alternative<MemberOf<std::vector<PlacedGrain>>>(key.member)) return "a list of grains";
+  if (!std::holds_alternative<MemberOf<std::vector<double>>>(key.member)) return "a whole number";
+  return key.unit.empty() ? "a list of plain numbers"
+                          : fmt::format("a list, each {}", in_words(parse_unit(key.unit).dimension));
+}
+
+std::string si_unit_of(const Key& key) { return si_unit(parse_unit(key.unit).dimension); }
+
+std::string accepted(const Key& key) {
+  const std::string range = key.range.text();
+  return kind_in_words(key) + (range.empty() ? "" : ", " + range) +
+         (range.empty() || key.unit.empty() ? "" : " " + si_unit_of(key));
+}
+
+std::string written_value(const Case& the_case, const Key& key) {
+  return text_of(the_case, key, [&](double number) { return quantity_text(number, key.unit); });
+}
+
+std::string si_value(const Case& the_case, const Key& key) { return text_of(the_case, key, float_text); }
+
+}  // namespace softgrain

@@ -1,0 +1,252 @@
+#include "softgrain/io/case/form_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/io/case/case_value.hpp"
+#include "softgrain/io/case/suggest.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Keys of later versions, and what does their work today. A key covers those below it.
+struct LaterKey {
+  std::string_view name, today;
+};
+constexpr std::array later_keys{
+    LaterKey{"kind.surface", "grains are disks"},
+    LaterKey{"kind.law.yield_stress", "laws are elastic"},
+    LaterKey{"kind.law.hardening", "laws are elastic"},
+    LaterKey{"kind.law.viscosity", "laws are elastic; mpm.damping slows a whole grain down"},
+    LaterKey{"pair.restitution", "contact.restitution holds for all pairs"},
+    LaterKey{"pair.adhesion", "grains and walls do not stick"},
+    LaterKey{"box.z", "space has two dimensions"},
+    LaterKey{"box.die_friction", "a [[pair]] between a kind and \"wall\" holds for all walls"},
+    LaterKey{"stage.zz", "space has two dimensions"},
+    LaterKey{"stage.xy", "walls do not shear"},
+    LaterKey{"stage.xx.stress", "a stress is kept by yy; isotropic paths keep it on all walls"},
+    LaterKey{"stage.xx.rate", "walls move at a velocity"},
+    LaterKey{"stage.yy.rate", "walls move at a velocity"},
+    LaterKey{"stage.set", "keys hold for the whole run"},
+    LaterKey{"stage.until.stress_xx", "stress_yy ends a stage"},
+};
+
+bool is_below(std::string_view name, std::string_view above) {
+  return name == above || (name.starts_with(above) && name[above.size()] == '.');
+}
+
+bool has_forms_below(const std::string& name) {
+  return std::ranges::any_of(form_keys(),
+                             [&](const FormKey& form) { return form.name.starts_with(name + "."); });
+}
+
+std::string unknown_key(const std::string& name) {
+  std::vector<std::string> names;
+  for (const FormKey& form : form_keys()) names.push_back(form.name);
+  return fmt::format("unknown key '{}'{}", name, did_you_mean(name, names));
+}
+
+std::string quoted(const std::vector<std::string>& words) {
+  return fmt::format("\"{}\"", fmt::join(words, "\", \""));
+}
+
+/// The texts of a list, or nothing.
+std::vector<std::string> texts_of(const TomlValue& value) {
+  std::vector<std::string> texts;
+  if (const auto* items = std::get_if<TomlValue::Array>(&value.content))
+    for (const TomlValue& item : *items)
+      if (const auto* text = std::get_if<std::string>(&item.content)) texts.push_back(*text);
+  return texts;
+}
+
+}  // namespace
+
+std::string not_yet(const std::string& name) {
+  for (const LaterKey& later : later_keys)
+    if (is_below(name, later.name))
+      return fmt::format("not yet: '{}' comes with a later version; today {}", name, later.today);
+  return "";
+}
+
+void FormReader::for_each_entry(const std::string& prefix, const TomlValue::Table& table, int set,
+                                const Visit& visit) {
+  for (const TomlMember& entry : table) {
+    const std::string name = prefix + "." + entry.key;
+    const Origin origin{.set = set, .at = entry.at};
+    const auto* inner = std::get_if<TomlValue::Table>(&entry.value.content);
+    if (const std::string later = not_yet(name); !later.empty())
+      draft_.add(origin, later);
+    else if (inner != nullptr && has_forms_below(name))
+      for_each_entry(name, *inner, set, visit);
+    else if (const FormKey* form = find_form(name))
+      visit(*form, entry.value, origin);
+    else
+      draft_.add(origin, has_forms_below(name) ? fmt::format("'{}' is a table", name) : unknown_key(name));
+  }
+}
+
+void FormReader::read_tables(const std::string& table, const TomlValue& tables, Origin at) {
+  const auto* items = std::get_if<TomlValue::Array>(&tables.content);
+  if (items == nullptr)
+    return draft_.add(at, fmt::format("'{}' may stand several times: write [[{}]]", table, table));
+  int number = 0;
+  for (const TomlValue& item : *items) {
+    const auto* entries = std::get_if<TomlValue::Table>(&item.content);
+    const Origin origin{.at = item.at.line > 0 ? item.at : at.at};
+    if (entries == nullptr)
+      draft_.add(origin, fmt::format("'{}' is a list of tables: write [[{}]]", table, table));
+    else if (table == "pair")
+      pairs_.emplace_back(*entries, origin);
+    else if (table == "stage")
+      stages_.push_back(read_stage(*entries, origin));
+    else if (++number > 1)
+      draft_.add(
+          origin,
+          "not yet: a second [[kind]] comes with a later version; today all grains are of one kind, which "
+          "may have several diameters: diameter = { values = [\"1 mm\", \"2 mm\"], shares = [0.4, 0.6] }");
+    else
+      read_kind(*entries);
+  }
+}
+
+bool FormReader::read_key(const std::string& name, const TomlValue& value, Origin origin) {
+  if (const std::string later = not_yet(name); !later.empty()) return draft_.add(origin, later), true;
+  const FormKey* form = find_form(name);
+  if (form == nullptr) return false;
+  if (name.starts_with("pair.") || name.starts_with("stage."))
+    return draft_.add(origin,
+                      fmt::format("'{}' stands in a table of the file only; --set takes the keys that it "
+                                  "stands for, as loading.max_strain or contact.friction",
+                                  name)),
+           true;
+  give(*form, value, origin);
+  return true;
+}
+
+void FormReader::give(const FormKey& form, const TomlValue& value, Origin origin) {
+  const auto* text = std::get_if<std::string>(&value.content);
+  if (form.takes == Takes::as_key) {
+    for (const std::string& key : form.keys) draft_.give(*find_key(key), form.name, value, origin);
+    const std::string& first = form.keys.front();
+    if (form.name == "kind.diameter" && draft_.is_valid(first))  // also of one grain between plates
+      draft_.the_case.grain.radius = draft_.the_case.sample.smallest_diameter / 2;
+  } else if (form.takes == Takes::word || form.takes == Takes::only) {
+    check_word(form, value, origin);
+  } else if (text == nullptr || text->empty()) {
+    draft_.add(value.at.line > 0 ? Origin{.set = origin.set, .at = value.at} : origin,
+               fmt::format("{} takes a text", form.name));
+  } else if (form.name == "kind.name") {
+    kind_name_ = *text;
+    if (*text == "wall") draft_.add(origin, "kind.name \"wall\" is taken: [[pair]] calls the walls so");
+  } else if (form.name == "sample.file") {
+    sample_file_ = *text;
+    sample_file_origin_ = origin;
+  }
+}
+
+void FormReader::read_kind(const TomlValue::Table& table) {
+  for_each_entry("kind", table, -1, [&](const FormKey& form, const TomlValue& value, Origin origin) {
+    give(form, value, origin);
+  });
+}
+
+bool FormReader::check_word(const FormKey& form, const TomlValue& value, Origin origin) {
+  std::string word;
+  if (const auto* text = std::get_if<std::string>(&value.content)) word = *text;
+  if (const auto* i = std::get_if<std::int64_t>(&value.content)) word = fmt::format("{}", *i);
+  if (const auto* x = std::get_if<double>(&value.content)) word = fmt::format("{}", *x);
+  const auto is_word = [&](const std::vector<std::string>& words) {
+    return std::ranges::find(words, word) != words.end();
+  };
+  if (is_word(form.words)) return true;
+  if (value.at.line > 0) origin.at = value.at;
+  if (form.takes == Takes::only || is_word(form.later))
+    draft_.add(origin, fmt::format("not yet: {} = {} comes with a later version; today it is {}", form.name,
+                                   word, form.words.front()));
+  else
+    draft_.add(origin, fmt::format("{} takes {}, got '{}'{}", form.name, quoted(form.words), word,
+                                   did_you_mean(word, form.words)));
+  return false;
+}
+
+std::optional<double> FormReader::number(const FormKey& form, const TomlValue& value, Origin origin) {
+  Key key{form.name, MemberOf<double>(+[](Case& c) -> double& { return c.loading.hold; }), form.unit,
+          form.range, form.text};
+  Case scratch;
+  try {
+    assign(scratch, key, value);
+    return scratch.loading.hold;
+  } catch (const UsageError& error) {
+    if (value.at.line > 0) origin.at = value.at;
+    const std::string message = error.what();
+    draft_.add(origin, message.substr(0, message.find("; the default is")));
+    return std::nullopt;
+  }
+}
+
+StageText FormReader::read_stage(const TomlValue::Table& table, Origin at) {
+  StageText stage{.at = at, .numbers = {}, .rests = {}};
+  for_each_entry("stage", table, -1, [&](const FormKey& form, const TomlValue& value, Origin origin) {
+    if (form.takes == Takes::number) {
+      if (const auto read = number(form, value, origin)) stage.numbers[form.name] = {*read, origin};
+    } else if (form.takes == Takes::word) {
+      if (check_word(form, value, origin)) stage.rests.insert(form.name);
+    }
+  });
+  return stage;
+}
+
+void FormReader::read_pair(const TomlValue::Table& table, Origin at) {
+  std::vector<std::string> sides;
+  const TomlValue* friction = nullptr;
+  Origin friction_at = at;
+  for_each_entry("pair", table, -1, [&](const FormKey& form, const TomlValue& value, Origin origin) {
+    if (form.takes == Takes::texts) sides = texts_of(value), at = origin;
+    if (form.takes == Takes::only) check_word(form, value, origin);
+    if (form.takes == Takes::as_key) friction = &value, friction_at = origin;
+  });
+  if (sides.size() != 2)
+    return draft_.add(at,
+                      "pair.between takes two names, as in [\"copper\", \"wall\"]: of kinds, or \"wall\"");
+  int walls = 0;
+  for (const std::string& side : sides) {
+    if (side == "wall") {
+      ++walls;
+    } else if (side == "bottom" || side == "top" || side == "left" || side == "right") {
+      return draft_.add(at,
+                        fmt::format("not yet: pair.between a kind and the wall '{}' alone comes with a later "
+                                    "version; today \"wall\" is all of them",
+                                    side));
+    } else if (side != kind_name_) {
+      const std::vector<std::string> names{kind_name_, "wall"};
+      return draft_.add(
+          at, fmt::format("pair.between: no [[kind]] has the name '{}'{}", side, did_you_mean(side, names)));
+    }
+  }
+  if (walls == 2) return draft_.add(at, "pair.between: two walls never meet");
+  if (friction == nullptr) return;
+  const char* key = walls == 1 ? "contact.wall_friction" : "contact.friction";
+  draft_.give(*find_key(key), walls == 1 ? "pair.friction of a wall" : "pair.friction", *friction,
+              friction_at);
+}
+
+/// A list where there are values, lognormal where there is a median.
+void FormReader::imply_law_of_sizes() {
+  const auto given = [&](const char* key) { return draft_.origins.contains(key); };
+  if (given("sample.sizes")) return;
+  if (given("sample.diameters"))
+    draft_.the_case.sample.sizes = SizeLaw::list;
+  else if (given("sample.median_diameter"))
+    draft_.the_case.sample.sizes = SizeLaw::lognormal;
+}
+
+void FormReader::finish_file() {
+  imply_law_of_sizes();
+  for (const auto& [table, at] : pairs_) read_pair(table, at);
+  if (!stages_.empty() && draft_.issues.empty()) read_stages(stages_, draft_);
+}
+
+}  // namespace softgrain

@@ -1,0 +1,222 @@
+#include "softgrain/io/case/schema.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "softgrain/bpm/aggregate.hpp"
+#include "softgrain/io/case/words.hpp"
+
+namespace softgrain {
+namespace {
+
+using namespace scope;
+
+Range anything() { return {}; }
+Range its_words() { return {}; }
+Range positive() { return {.low = 0, .without_low = true}; }
+Range at_least(double low) { return {.low = low}; }
+Range from_to(double low, double high) { return {.low = low, .high = high}; }
+Range between(double low, double high) {
+  return {.low = low, .high = high, .without_low = true, .without_high = true};
+}
+
+template <class Enum>
+WordMember words_in(std::string_view (*word)(const Case&), bool (*assign)(Case&, std::string_view)) {
+  return {[] {
+            std::vector<std::string> words;
+            for (const Word<Enum>& entry : words_of<Enum>()) words.emplace_back(entry.word);
+            return words;
+          },
+          word, assign};
+}
+
+/// What leads from a case to a value of it; to an enum through its words.
+template <class Place>
+Member member_of(Place place) {
+  using T = std::decay_t<decltype(place(std::declval<Case&>()))>;
+  if constexpr (std::is_enum_v<T>) {
+    return words_in<T>([](const Case& c) { return word_of(Place{}(c)); },
+                       [](Case& c, std::string_view word) {
+                         const std::optional<T> value = value_of<T>(word);
+                         if (value) Place{}(c) = *value;
+                         return value.has_value();
+                       });
+  } else {
+    return MemberOf<T>(place);
+  }
+}
+
+// clang-format off
+// A key's name and its place in Case from the same words. The last argument is its scope: none for everywhere.
+#define KEY(member, ...) Key{#member, member_of([](auto& c) -> auto& { return c.member; }), __VA_ARGS__}
+
+std::vector<Key> all_keys() {
+  return {
+      KEY(experiment.loading, "", its_words(),
+          "the loading path; diametral: one grain between two plates, the top one moves; compaction: grains in a box "
+          "whose lid comes down; isotropic: the same, all four walls come in"),
+      KEY(experiment.model, "", its_words(),
+          "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other; mpm: an "
+          "elastic body by the material point method"),
+
+      KEY(grain.radius, "mm", positive(), "radius R of the grain", between_plates),
+      KEY(grain.density, "kg/m^3", positive(), "density rho; the grain weighs rho pi R^2 per metre of depth"),
+
+      KEY(bpm.primaries, "", from_to(fewest_primaries, 1e6),
+          "number of primary particles in a grain; in a box: in each, or in the smallest (bpm.equal)", with_bpm),
+      KEY(bpm.size_ratio, "", from_to(1, largest_size_ratio), "largest over smallest primary diameter", with_bpm),
+      KEY(bpm.attraction, "N/m", positive(),
+          "attraction F0 between touching primaries of the grain, per metre of depth (diametral)", bpm_between_plates),
+      KEY(bpm.cohesive_pressure, "MPa", positive(),
+          "internal cohesive pressure sigma_I = F0/<a0>, the same in all grains: F0 follows the size of their "
+          "primaries (in a box)", bpm_in_a_box),
+      KEY(bpm.exponent, "", at_least(1),
+          "exponent gamma of F0 (a0/r)^gamma, r the distance of the centres, a0 the sum of the radii", with_bpm),
+
+      KEY(bpm.inner_friction, "", at_least(0), "coefficient of friction mu between the primaries of a grain", with_bpm),
+      KEY(bpm.equal, "", its_words(),
+          "what all grains share: the number of primaries, or, to about 5 %, their size (in a box)", bpm_in_a_box),
+      KEY(bpm.library, "", from_to(1, 1000), "different aggregates of which the grains are copies (in a box)", bpm_in_a_box),
+
+      KEY(mpm.law, "", its_words(), "elastic law", with_mpm),
+      KEY(mpm.young_modulus, "MPa", positive(), "Young's modulus E", with_mpm),
+      KEY(mpm.poisson_ratio, "", between(-1, 0.5), "Poisson's ratio nu", with_mpm),
+      KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points", with_mpm),
+      KEY(mpm.integrator, "", its_words(), "backward Euler, or symplectic Euler with lumped masses", total_lagrangian),
+      KEY(mpm.formulation, "", its_words(),
+          "total_lagrangian: on a grid that fits the grain; updated_lagrangian: points move through a lattice that is "
+          "reset in each step, always explicit, for comparison (diametral)", with_mpm),
+      KEY(mpm.shape_functions, "", its_words(), "of the lattice (updated_lagrangian)", updated_lagrangian),
+      KEY(mpm.contact_on, "", its_words(),
+          "where contact acts; total_lagrangian: on the outline only", updated_lagrangian),
+      KEY(mpm.damping, "1/s", at_least(0),
+          "rate zeta of the damping f = -zeta m (v - v_walls), v_walls the velocity that the walls give to what lies "
+          "between them; 0: none; a free grain slows down by exp(-zeta t)", with_mpm),
+      KEY(mpm.tolerance, "", positive(), "largest last correction of Newton's method over the mean grain radius", implicit),
+
+      KEY(contact.friction, "", at_least(0),
+          "coefficient of friction mu between grains; never inside one: bpm.inner_friction", with_pairs),
+      KEY(contact.wall_friction, "", at_least(0), "coefficient of friction mu against walls"),
+      KEY(contact.restitution, "", from_to(0, 1), "Newton's coefficient of restitution e_n", with_bpm),
+      KEY(contact.activation, "", its_words(),
+          "when a contact is active: always, so that it may close within the step; or when it is closed at mid-step, or "
+          "will be at the end of the step", with_bpm),
+      KEY(contact.push_out, "", from_to(0, 1), "share beta of an existing overlap that is removed in a step", with_bpm),
+
+      KEY(solver.min_sweeps, "", at_least(1), "sweeps of the contact solver in every step", with_bpm),
+      KEY(solver.max_sweeps, "", at_least(1), "sweeps after which a step counts as not converged", with_bpm),
+      KEY(solver.tolerance, "", positive(),
+          "converged: mean penetration gained in a step over the mean primary diameter is below this", with_bpm),
+      KEY(solver.relaxation, "", between(0, 2), "over-relaxation omega of a sweep; 1 is plain Gauss-Seidel", with_bpm),
+      KEY(solver.precision, "", its_words(),
+          "of impulses and velocities within the sweeps of a bpm step; double for tolerances below 1e-11", with_bpm),
+
+      KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top plate; isotropic: of opposite walls towards each other, half by each"),
+      KEY(loading.max_strain, "", between(0, 3),
+          "strain at the end: eps = -ln(1 - d/R), d half the travel of the plate; in a box: eps = ln(h_start/h)"),
+      KEY(loading.max_packing_fraction, "", from_to(0, 2),
+          "packing fraction Phi_0 of the undeformed grains at the end, if max_strain comes later; 0: none (in a box)", in_a_box),
+      KEY(loading.max_stress, "MPa", at_least(0),
+          "vertical stress at the end, mean of lid and bottom over 0.1 % of strain; 0: none (in a box)", in_a_box),
+      KEY(loading.max_overlap, "", from_to(0, 0.05),
+          "mean overlap of primaries in contact, over their mean radius, at the end; 0: none (bpm in a box)", bpm_in_a_box),
+      KEY(loading.unload_at, "", positive(),
+          "ascending strains at which the plate turns back once; [] for none"),
+      KEY(loading.unload_by, "", positive(), "strain given back before loading again", with_unloading),
+      KEY(loading.hold, "us", at_least(0), "rest of the plate wherever it turns, and at the end"),
+      KEY(loading.hold_stress, "MPa", at_least(0),
+          "vertical stress at which the walls leave their path: they keep it for loading.hold, which ends the run; 0: none "
+          "(in a box)", in_a_box),
+
+      KEY(time.step, "us", at_least(0),
+          "time step dt; auto: bpm: a 43rd of the period of the bonds between the smallest primaries; implicit mpm: the "
+          "plate moves 1 % of the smallest radius; explicit mpm: a stable step, which is divided while cells need it", everywhere, "auto"),
+
+      KEY(sample.seed, "", at_least(0),
+          "seed of the random numbers; another seed is another sample of the same grain", with_chance),
+      KEY(sample.grains, "", from_to(1, 1e6), "grains in the box", random),
+      KEY(sample.packing_fraction, "", between(0, 1), "undeformed grain area over box area at the start, below 0.8", random),
+      KEY(sample.aspect, "", from_to(1e-4, 1e4), "width over height of the box at the start", random),
+      KEY(sample.sizes, "", its_words(),
+          "law of the diameters, by number of grains; uniform between smallest and largest; lognormal with a median, cut "
+          "off below smallest and above largest; list: sample.diameters; left out: list where diameters are given, lognormal "
+          "where a median is", random),
+      KEY(sample.smallest_diameter, "mm", positive(), "of the grains in the box, or lower cut-off", random_between),
+      KEY(sample.largest_diameter, "mm", positive(), "of the grains in the box, or upper cut-off", random_between),
+      KEY(sample.median_diameter, "mm", positive(), "median of lognormal sizes before they are cut off", lognormal),
+      KEY(sample.deviation, "", between(0, 3), "standard deviation of ln d of lognormal sizes before they are cut off", lognormal),
+      KEY(sample.diameters, "mm", positive(), "diameters of the list", listed),
+      KEY(sample.shares, "", positive(), "share of the grains' area that each diameter of the list has, in proportion", listed),
+      KEY(sample.numbers, "", positive(),
+          "how many grains have each diameter of the list, in proportion; neither shares nor numbers: as many of each", listed),
+      KEY(sample.placed, "", anything(),
+          "the grains in their places, [x, y, radius, angle] of each in m and rad: what a run writes for sample.file", placed),
+      KEY(box.width, "mm", at_least(0), "of the box of placed grains; auto: from the first to the last point of all grains", placed, "auto"),
+      KEY(box.height, "mm", at_least(0), "of the box of placed grains; auto: from the lowest to the highest point of all grains", placed, "auto"),
+
+      KEY(output.samples, "", from_to(1, 1e6), "rows of series.csv, evenly over the run"),
+      KEY(output.snapshots, "", from_to(0, 1e5), "restart points, evenly over the run"),
+      KEY(output.vtk, "", anything(), "write .vtp files for ParaView beside the snapshots"),
+      KEY(output.report, "", anything(), "write report.html, a page to look at in a browser, when the run is done"),
+  };
+}
+
+std::vector<TableOfKeys> all_tables() {
+  return {
+      {"experiment", "What is done, and with which model of a grain."},
+      {"grain", "The soft grain."},
+      {"bpm", "Bonded particle model: the primary particles of a grain."},
+      {"mpm", "Material point method: the elastic material and its grid."},
+      {"contact", "Laws of contact."},
+      {"solver", "The contact solver: nonlinear Gauss-Seidel."},
+      {"loading", "What the plates do."},
+      {"time", "Time stepping."},
+      {"sample", "The initial state."},
+      {"box", "What holds the grains."},
+      {"output", "What is written."},
+  };
+}
+// clang-format on
+#undef KEY
+
+}  // namespace
+
+bool Range::contains(double value) const {
+  const bool above = without_low ? value > low : value >= low;
+  const bool below = without_high ? value < high : value <= high;
+  return above && below;
+}
+
+std::string Range::text() const {
+  const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
+  if (has_low && has_high)
+    return fmt::format("in {}{}, {}{}", without_low ? '(' : '[', low, high, without_high ? ')' : ']');
+  if (has_low) return fmt::format("{} {}", without_low ? ">" : ">=", low);
+  if (has_high) return fmt::format("{} {}", without_high ? "<" : "<=", high);
+  return "";
+}
+
+const std::vector<Key>& case_keys() {
+  static const std::vector<Key> keys = all_keys();
+  return keys;
+}
+
+const std::vector<TableOfKeys>& case_tables() {
+  static const std::vector<TableOfKeys> tables = all_tables();
+  return tables;
+}
+
+const Key* find_key(std::string_view name) {
+  for (const Key& key : case_keys())
+    if (key.name == name) return &key;
+  return nullptr;
+}
+
+std::vector<std::string> key_names() {
+  std::vector<std::string> names;
+  for (const Key& key : case_keys()) names.push_back(key.name);
+  return names;
+}
+
+}  // namespace softgrain

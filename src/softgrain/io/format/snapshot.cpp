@@ -1,0 +1,230 @@
+#include "softgrain/io/format/snapshot.hpp"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/core/version.hpp"
+#include "softgrain/io/format/file.hpp"
+#include "softgrain/io/format/hdf5_file.hpp"
+
+namespace softgrain {
+
+namespace {
+
+constexpr std::string_view format_name = "softgrain-snapshot";
+constexpr std::int64_t format_version = 1;
+
+/// Absolute path in the file -> dataset.
+using Datasets = std::map<std::string, Array>;
+
+const std::string checkpoint_group = "/checkpoint/", particle_group = "/scene/particles/",
+                  contact_group = "/scene/contacts/", outline_group = "/scene/outlines/",
+                  walls_path = "/scene/walls", run_group = "/run/";
+
+class Hash {
+ public:
+  Hash() { XXH3_128bits_reset(&state_); }
+  void add(const void* data, std::size_t size) { XXH3_128bits_update(&state_, data, size); }
+  void add(std::uint64_t number) { add(&number, sizeof number); }
+  std::string digest() const {
+    const XXH128_hash_t hash = XXH3_128bits_digest(&state_);
+    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+  }
+
+ private:
+  XXH3_state_t state_;
+};
+
+/// XXH3-128 of all bytes; it ends the file, so that a flipped bit is found wherever it lies.
+std::string file_hash(std::string_view bytes) {
+  Hash hash;
+  hash.add(bytes.data(), bytes.size());
+  return hash.digest();
+}
+
+constexpr std::size_t hash_length = 32;
+
+/// XXH3-128 over the datasets in the order of their paths: path, 0, 'f' or 'i', rows, columns, values.
+std::string content_hash(const Datasets& datasets) {
+  Hash hash;
+  for (const auto& [path, array] : datasets) {
+    hash.add(path.c_str(), path.size() + 1);
+    hash.add(array.values.index() == 0 ? "f" : "i", 1);
+    std::visit(
+        [&hash, columns = array.columns](const auto& values) {
+          hash.add(values.size() / columns);
+          hash.add(columns);
+          hash.add(values.data(), values.size() * sizeof values[0]);
+        },
+        array.values);
+  }
+  return hash.digest();
+}
+
+/// Of these 0.1.0 before its release knew nothing.
+constexpr std::array<std::string_view, 3> later_totals{"residual_limit", "energy_error", "energy_scale"};
+
+/// The datasets of /run: the same list writes and reads them.
+template <class Report, class Sums, class Visit>
+void for_each_total(Report& report, Sums& sums, Visit&& visit) {
+  visit("steps", report.steps);
+  visit("steps_converged", report.steps_converged);
+  visit("sweeps", report.sweeps);
+  visit("residual_max", report.residual_max);
+  visit("residual_limit", report.residual_limit);
+  visit("overlap_max", report.overlap_max);
+  visit("energy_error", report.energy.error);
+  visit("energy_scale", report.energy.scale);
+  visit("row_steps", sums.steps);
+  visit("row_sweeps", sums.sweeps);
+  visit("row_residual_mean", sums.residual_mean);
+  visit("row_residual_max", sums.residual_max);
+  visit("row_overlap_mean", sums.overlap_mean);
+  visit("row_overlap_max", sums.overlap_max);
+}
+
+Datasets datasets_of(const Snapshot& snapshot) {
+  Datasets datasets;
+  const auto add = [&](const std::string& group, const std::map<std::string, Array>& arrays) {
+    for (const auto& [name, array] : arrays) datasets[group + name] = array;
+  };
+  add(checkpoint_group, snapshot.checkpoint.arrays);
+  add(particle_group, snapshot.scene.particles);
+  add(contact_group, snapshot.scene.contacts);
+  add(outline_group, snapshot.scene.outlines);
+  datasets[walls_path] = {4, snapshot.scene.wall_segments};
+  for_each_total(snapshot.report, snapshot.sums, [&](const char* name, const auto& value) {
+    datasets[run_group + name] = {1, std::vector{value}};
+  });
+  return datasets;
+}
+
+/// The arrays of one group, by their names in it.
+std::map<std::string, Array> arrays_of(const Datasets& datasets, const std::string& group) {
+  std::map<std::string, Array> arrays;
+  for (auto at = datasets.lower_bound(group); at != datasets.end() && at->first.starts_with(group); ++at)
+    arrays[at->first.substr(group.size())] = at->second;
+  return arrays;
+}
+
+/// Distributes datasets whose hash is right; what is missing then was written by another program.
+Snapshot snapshot_of(const Datasets& datasets, const std::string& name) {
+  Snapshot snapshot;
+  try {
+    snapshot.checkpoint.arrays = arrays_of(datasets, checkpoint_group);
+    snapshot.scene.particles = arrays_of(datasets, particle_group);
+    snapshot.scene.contacts = arrays_of(datasets, contact_group);
+    snapshot.scene.outlines = arrays_of(datasets, outline_group);
+    snapshot.scene.wall_segments = std::get<std::vector<double>>(datasets.at(walls_path).values);
+    for_each_total(snapshot.report, snapshot.sums, [&]<class T>(std::string_view total, T& value) {
+      const bool is_late = std::ranges::find(later_totals, total) != later_totals.end();
+      if (is_late && !datasets.contains(run_group + std::string(total))) return;
+      value = std::get<std::vector<T>>(datasets.at(run_group + std::string(total)).values).at(0);
+    });
+  } catch (const std::logic_error&) {  // at
+    throw IoError(fmt::format("{}: a dataset is missing", name));
+  } catch (const std::bad_variant_access&) {
+    throw IoError(fmt::format("{}: a dataset has the wrong type", name));
+  }
+  return snapshot;
+}
+
+/// The HDF5 file in front of the hash. The library must not see damaged bytes: it may crash on them.
+std::string_view checked_contents(std::string_view bytes, const std::string& name) {
+  const auto contents = bytes.substr(0, bytes.size() - std::min(bytes.size(), hash_length));
+  if (bytes.substr(contents.size()) != file_hash(contents))
+    throw IoError(fmt::format("{}: not a snapshot, or a damaged one: the hash at its end is wrong", name));
+  return contents;
+}
+
+void check_format(const Hdf5Reader& file, const std::string& name) {
+  if (file.text_attribute("format") != format_name)
+    throw IoError(fmt::format("{}: not a {}", name, format_name));
+  const auto version = file.integer_attribute("version");
+  if (version != format_version)
+    throw IoError(
+        fmt::format("{}: snapshot of version {}; this program reads {}", name, version, format_version));
+  if (file.integer_attribute("complete") != 1)
+    throw IoError(fmt::format("{}: snapshot is not complete", name));
+}
+
+/// Raises std::bad_alloc here, where it is caught, if there is no room for what the HDF5 library will need:
+/// it may crash where it runs out of memory.
+void require_room(const Datasets& datasets) {
+  std::size_t numbers = 0;
+  for (const auto& [path, array] : datasets)
+    numbers += std::visit([](const auto& values) { return values.size(); }, array.values);
+  std::string room;
+  room.reserve(3 * sizeof(double) * numbers);  // its image, which doubles when it is full
+}
+
+}  // namespace
+
+void StepSums::add(const StepReport& step) {
+  ++steps;
+  sweeps += step.sweeps;
+  residual_mean += step.residual_mean;
+  residual_max = std::max(residual_max, step.residual_max);
+  overlap_mean += step.overlap_mean;
+  overlap_max = std::max(overlap_max, step.overlap_max);
+}
+
+std::string encode_snapshot(const Snapshot& snapshot, const std::string& name) {
+  const Datasets datasets = datasets_of(snapshot);
+  require_room(datasets);
+  const BuildInfo build = build_info();
+  Hdf5Writer file(name);
+  file.write_attribute("format", format_name);
+  file.write_attribute("version", format_version);
+  file.write_attribute("program",
+                       std::string_view(fmt::format("softgrain {} ({})", build.version, build.commit)));
+  file.write_attribute("step", snapshot.checkpoint.step);
+  file.write_attribute("time", snapshot.checkpoint.time);
+  file.write_attribute("wall_seconds", snapshot.wall_seconds);
+  file.write_attribute("cpu_seconds", snapshot.cpu_seconds);
+  file.write_attribute("case", std::string_view(snapshot.case_text));
+  for (const auto& [path, array] : datasets) file.write(path, array);
+  file.write_attribute("content_hash", std::string_view(content_hash(datasets)));
+  file.write_attribute("complete", std::int64_t{1});
+  const std::string bytes = file.finish();
+  return bytes + file_hash(bytes);
+}
+
+Snapshot decode_snapshot(std::string_view bytes, const std::string& name) {
+  const Hdf5Reader file(checked_contents(bytes, name), name);
+  check_format(file, name);
+  Datasets datasets;
+  for (const std::string& path : file.datasets()) datasets[path] = file.read(path);
+  if (content_hash(datasets) != file.text_attribute("content_hash"))
+    throw IoError(fmt::format("{}: damaged: its content hash is wrong", name));
+  Snapshot snapshot = snapshot_of(datasets, name);
+  snapshot.checkpoint.step = file.integer_attribute("step");
+  snapshot.checkpoint.time = file.real_attribute("time");
+  snapshot.wall_seconds = file.real_attribute("wall_seconds");
+  snapshot.cpu_seconds = file.real_attribute("cpu_seconds");
+  snapshot.case_text = file.text_attribute("case");
+  return snapshot;
+}
+
+void write_snapshot(const std::filesystem::path& path, const Snapshot& snapshot) {
+  PendingFile file(path, encode_snapshot(snapshot, path.string()));
+  read_snapshot(file.temporary());  // raises IoError unless the disk gives back what it got
+  file.commit();
+}
+
+Snapshot read_snapshot(const std::filesystem::path& path) {
+  return decode_snapshot(read_file(path), path.string());
+}
+
+double snapshot_time(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  return Hdf5Reader(checked_contents(bytes, path.string()), path.string()).real_attribute("time");
+}
+
+}  // namespace softgrain

@@ -1,0 +1,192 @@
+#include "softgrain/lattice/lattice_grains.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "softgrain/geometry/polygon.hpp"
+#include "softgrain/math/tensor.hpp"
+#include "softgrain/model/grain_contacts.hpp"
+#include "softgrain/model/work_budget.hpp"
+
+namespace softgrain {
+namespace {
+
+std::vector<Vec<4>> components(std::span<const Mat<2>> tensors) {
+  std::vector<Vec<4>> rows;
+  for (const Mat<2>& tensor : tensors) rows.push_back({tensor.c});
+  return rows;
+}
+
+}  // namespace
+
+StepReport LatticeGrains::step(Box<2>& box, double dt) {
+  dynamics_.walls = box.walls;
+  const SoftStepReport soft = dynamics_.step(dt);
+  impulse_time_ = dt;
+  for (std::size_t w = 0; w < box.walls.size(); ++w) {
+    box.walls[w].point = dynamics_.walls[w].point;
+    box.impulse[w] = dynamics_.wall_impulse(static_cast<int>(w));
+  }
+  return {.contacts = soft.contacts,
+          .sweeps = soft.sweeps,
+          .residual_mean = soft.residual_mean,
+          .residual_max = soft.residual,
+          .residual_limit = dynamics_.options.solver.worst_factor * dynamics_.options.solver.tolerance,
+          .overlap_mean = soft.penetration_mean,
+          .overlap_max = soft.penetration_max,
+          .converged = soft.converged};
+}
+
+std::vector<double> LatticeGrains::radii() const {
+  std::vector<double> radius;
+  for (const PointGrain& grain : dynamics_.grains)
+    radius.push_back(std::sqrt(grain.area() / std::numbers::pi));
+  return radius;
+}
+
+std::vector<Vec<2>> LatticeGrains::centres() const {
+  std::vector<Vec<2>> centres;
+  for (const PointGrain& grain : dynamics_.grains) {
+    Vec<2> centre;
+    for (int p = 0; p < grain.points(); ++p) centre += (grain.volume[p] / grain.area()) * grain.position[p];
+    centres.push_back(centre);
+  }
+  return centres;
+}
+
+Bodies LatticeGrains::bodies() const {
+  Bodies points;
+  for (const PointGrain& grain : dynamics_.grains) {
+    for (const double V : grain.volume) points.mass.push_back(density() * V);
+    points.velocity.insert(points.velocity.end(), grain.velocity.begin(), grain.velocity.end());
+  }
+  return points;
+}
+
+Outlines LatticeGrains::outlines() const {
+  Outlines all{.vertex = {}, .begin = {0}, .area = 0};
+  for (const PointGrain& grain : dynamics_.grains) {
+    all.vertex.insert(all.vertex.end(), grain.outline.begin(), grain.outline.end());
+    all.begin.push_back(static_cast<int>(all.vertex.size()));
+    all.area += polygon_area(grain.outline);
+  }
+  return all;
+}
+
+/// Those on nodes have no place on an outline and are left out.
+std::vector<ContactPoint> LatticeGrains::contacts() const {
+  std::vector<ContactPoint> points;
+  for (std::size_t c = 0; c < dynamics_.contacts.size(); ++c) {
+    const LatticeContact& contact = dynamics_.contacts[c];
+    if (contact.vertex < 0) continue;
+    const Vec<2>& n = contact.normal;
+    const Vec<2>& p = dynamics_.impulse[c];
+    points.push_back({.a = contact.grain,
+                      .b = contact.other >= 0 ? contact.other : wall_index(contact.wall),
+                      .force = (-1 / impulse_time_) * (p[0] * n + p[1] * perpendicular(n)),
+                      .normal = -n,
+                      .position = dynamics_.grains[contact.grain].outline[contact.vertex]});
+  }
+  return points;
+}
+
+std::pair<double, double> LatticeGrains::extent() const {
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
+  for (const PointGrain& grain : dynamics_.grains)
+    for (const Vec<2>& x : grain.outline) least = std::min(least, x[0]), largest = std::max(largest, x[0]);
+  return {least, largest};
+}
+
+std::pair<double, double> LatticeGrains::reach() const {
+  const auto [low, high] = extent();
+  const double margin = 0.1 * (high - low);
+  return {low - margin, high + margin};
+}
+
+Energies LatticeGrains::energies() const {
+  double kinetic = 0;
+  for (const PointGrain& grain : dynamics_.grains) kinetic += grain.kinetic_energy(density());
+  return energies_of(dynamics_.work, kinetic, dynamics_.elastic_energy());
+}
+
+Numbers LatticeGrains::numbers(const Box<2>&) const {
+  Numbers numbers = elastic_numbers(dynamics_.work, dynamics_.elastic_energy());
+  double least_J = std::numeric_limits<double>::infinity(), area = 0;
+  for (const PointGrain& grain : dynamics_.grains) {
+    area += grain.area();
+    for (const Mat<2>& F : grain.F) least_J = std::min(least_J, determinant(F));
+  }
+  const auto contacts = std::ranges::count_if(dynamics_.impulse, [](const Vec<2>& p) { return p[0] > 0; });
+  numbers.emplace_back("contacts", contacts);
+  numbers.emplace_back("least_J", least_J);
+  numbers.emplace_back("area_ratio", outlines().area / area);
+  return numbers;
+}
+
+Scene LatticeGrains::scene(const Box<2>&) const {
+  std::vector<double> radius, pressure, dilatation;
+  std::vector<Vec<2>> position, force;
+  std::vector<Mat<2>> stress;
+  std::vector<std::int64_t> grain_of_point, grain_of_vertex;
+  std::vector<int> first_vertex;
+  for (int g = 0; g < static_cast<int>(dynamics_.grains.size()); ++g) {
+    const PointGrain& grain = dynamics_.grains[g];
+    for (int p = 0; p < grain.points(); ++p) {
+      position.push_back(grain.position[p]);
+      dilatation.push_back(determinant(grain.F[p]));
+      radius.push_back(std::sqrt(dilatation.back() * grain.volume[p] / std::numbers::pi));
+      stress.push_back(dynamics_.stress(g, p));
+      pressure.push_back(-trace(stress.back()) / 2);
+      grain_of_point.push_back(g);
+    }
+    first_vertex.push_back(static_cast<int>(force.size()));
+    force.resize(force.size() + grain.outline.size());  // zero for contact on nodes
+    grain_of_vertex.insert(grain_of_vertex.end(), grain.outline.size(), g);
+  }
+  for (std::size_t c = 0; c < dynamics_.contacts.size(); ++c) {
+    const LatticeContact& contact = dynamics_.contacts[c];
+    const Vec<2>& p = dynamics_.impulse[c];
+    if (contact.vertex >= 0)
+      force[first_vertex[contact.grain] + contact.vertex] +=
+          1 / impulse_time_ * (p[0] * contact.normal + p[1] * perpendicular(contact.normal));
+  }
+  Scene scene;
+  scene.particles["position"] = to_array(position);
+  scene.particles["radius"] = {1, std::move(radius)};
+  scene.particles["pressure"] = {1, std::move(pressure)};
+  scene.particles["J"] = {1, std::move(dilatation)};
+  scene.particles["stress"] = to_array(components(stress));
+  scene.particles["grain"] = {1, std::move(grain_of_point)};
+  scene.outlines["position"] = to_array(outlines().vertex);
+  scene.outlines["force"] = to_array(force);
+  scene.outlines["grain"] = {1, std::move(grain_of_vertex)};
+  scene.contacts = grain_contacts(contacts(), static_cast<int>(dynamics_.grains.size()));
+  return scene;
+}
+
+std::vector<GrainView> LatticeGrains::grains() const {
+  const auto view = [](const std::vector<Vec<2>>& vectors) {
+    return VectorView{.begin = vectors.front().c.data(), .rows = vectors.size()};
+  };
+  std::vector<GrainView> views;
+  for (const PointGrain& grain : dynamics_.grains)
+    views.push_back(
+        {.position = view(grain.position), .velocity = view(grain.velocity), .outline = view(grain.outline)});
+  return views;
+}
+
+void LatticeGrains::visit(StateVisitor& visit) {
+  PointGrain& grain = dynamics_.grains.front();
+  visit({"position", "m", Owner::point, Role::state, "material points"}, grain.position);
+  visit({"velocity", "m/s", Owner::point, Role::state, "theirs"}, grain.velocity);
+  std::vector<Vec<4>> F = components(grain.F);
+  visit({"deformation_gradient", "", Owner::point, Role::state, "F, row by row"}, F);
+  for (std::size_t p = 0; p < F.size(); ++p) grain.F[p] = {F[p].c};
+  visit({"outline", "m", Owner::node, Role::state, "vertices of the outline"}, grain.outline);
+  visit({"impulse_time", "s", Owner::run, Role::start, "the step over which impulses acted"}, impulse_time_);
+  visit_work(dynamics_.work, visit);
+}
+
+}  // namespace softgrain

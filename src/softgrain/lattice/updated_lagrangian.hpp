@@ -1,0 +1,89 @@
+#pragma once
+#include <vector>
+
+#include "softgrain/contact/solver_options.hpp"
+#include "softgrain/geometry/wall.hpp"
+#include "softgrain/geometry/wall_motion.hpp"
+#include "softgrain/lattice/contact_on.hpp"
+#include "softgrain/lattice/lattice_contacts.hpp"
+#include "softgrain/lattice/point_grain.hpp"
+#include "softgrain/material/any_law.hpp"
+#include "softgrain/model/soft_step_report.hpp"
+#include "softgrain/model/work_budget.hpp"
+
+namespace softgrain {
+
+struct UpdatedLagrangianOptions {
+  ShapeFunction shape = ShapeFunction::gimp;
+  ContactOn contact_on = ContactOn::outline;
+  double cell = 0;  ///< h of the lattice [m]
+  double pic_share =
+      0.03;                ///< of a point's velocity that is taken from the nodes in a step (0: FLIP, 1: PIC)
+  double wall_reach = -1;  ///< grid_nodes: a wall acts on nodes nearer than this [cells]; below 0: as far as
+                           ///< if it were filled with points like the grains
+  SolverOptions solver{.max_sweeps = 500, .tolerance = 1e-7};  ///< NLGS; in units of mean radius / dt
+  double friction = 0;
+  double wall_friction = 0;
+  Vec<2> gravity{};    ///< [m/s^2]
+  double damping = 0;  ///< zeta [1/s], see MassDamping
+};
+
+/// Grains of points by updated-Lagrangian MPM, for comparison with the total-Lagrangian one (theory
+/// (55)-(60)): the lattice is reset in each step, and points and outlines move through it. Explicit, by
+/// symplectic Euler with contact dynamics; strains are updated last, from velocities that went through the
+/// points once more (MUSL): nodes with little mass would otherwise strain the points beside them without
+/// bound. Forces and contacts act on the same nodes before that, so that they balance where nothing moves.
+class UpdatedLagrangianDynamics {
+ public:
+  /// Raises UsageError if there is no grain, or an option is out of range.
+  UpdatedLagrangianDynamics(std::vector<PointGrain> point_grains, std::vector<Wall<2>> plates,
+                            AnyLaw material, double mass_density,
+                            const UpdatedLagrangianOptions& lagrangian_options);
+
+  /// One step of dt, which must be stable (stable_time_step below). Raises NumericalError, naming the grain,
+  /// if a point is inverted or the outline has left the points, and as check_wall_motion.
+  SoftStepReport step(double dt);
+
+  const Vec<2>& wall_impulse(int wall) const { return wall_impulse_[wall]; }  ///< on the wall [N s/m]
+  double elastic_energy() const;                                              ///< sum_p V_p psi(F_p) [J/m]
+  /// Cauchy stress of a point [Pa], tension positive.
+  Mat<2> stress(int grain, int point) const;
+
+  std::vector<PointGrain> grains;
+  std::vector<Wall<2>> walls;
+  AnyLaw law;
+  double density = 0;  ///< rho [kg/m^3]
+  UpdatedLagrangianOptions options;
+  std::vector<LatticeContact> contacts;  ///< of the last step
+  std::vector<Vec<2>> impulse;           ///< their impulses (normal, tangential) [N s/m]
+  WorkBudget work;  ///< since the start; `internal` holds what is lost between points and nodes too
+
+ private:
+  void find_stencils();
+  void gather_momentum();
+  void strain_points(double dt);
+  void kick_nodes(double dt);
+  template <class Law>
+  void add_internal_impulse(const Law& material, double dt);
+  void add_contact_work(const LatticeContacts& system);
+  double kinetic_energy_of_nodes() const;
+  double kinetic_energy_of_points() const;
+  void find_contacts(LatticeContacts& system, double dt);
+  void move_points(double dt);
+  void move_outlines(double dt);
+  SoftStepReport report_of(const SolverReport& solved);
+
+  Lattice lattice_;
+  double mean_radius_ = 0, smallest_radius_ = 0;
+  OutlineWeights outline_;
+  std::vector<std::vector<Stencil>> stencil_;             // (grains) (points)
+  std::vector<Vec<2>> impulse_on_node_;                   // dt f_i [N s/m]
+  std::vector<Vec<2>> start_velocity_, kicked_velocity_;  // v_i before and after the kick [m/s]
+  std::vector<Vec<2>> wall_impulse_;
+  MassDamping damping_;
+};
+
+/// A stable step [s]: `safety` times what a pressure wave in unstrained material needs across a cell [m].
+double stable_time_step(const AnyLaw& law, double density, double cell, double safety = 0.2);
+
+}  // namespace softgrain

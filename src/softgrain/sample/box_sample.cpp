@@ -1,0 +1,183 @@
+#include "softgrain/sample/box_sample.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/geometry/cell_grid.hpp"
+#include "softgrain/math/random.hpp"
+
+namespace softgrain {
+namespace {
+
+enum Stream : std::uint32_t { diameters, places, angles };
+
+/// Shares of the clearance that are tried, one after the other.
+constexpr std::array clearance_shares{1.0, 0.5, 0.25};
+
+/// Diameters are drawn anew up to so often: few grains of some sizes find no places where others do.
+constexpr int most_draws = 60;
+
+/// Pushes grains out of the walls and out of each other once; returns the largest overlap met [m].
+double push_apart(BoxSample& sample, double clearance, double widest) {
+  double worst = 0;
+  std::vector<Vec<2>> centres;
+  const Vec<2> size{sample.width, sample.height};
+  for (PlacedGrain& grain : sample.grains) {
+    const double reach = (1 + clearance) * grain.radius;
+    for (int k = 0; k < 2; ++k) {
+      const double inside = std::clamp(grain.centre[k], reach, size[k] - reach);
+      worst = std::max(worst, std::abs(inside - grain.centre[k]));
+      grain.centre[k] = inside;
+    }
+    centres.push_back(grain.centre);
+  }
+  CellGrid<2>(centres, 2 * (1 + clearance) * widest).for_each_close_pair([&](int i, int j) {
+    PlacedGrain &a = sample.grains[i], &b = sample.grains[j];
+    const Vec<2> d = b.centre - a.centre;
+    const double distance = norm(d), overlap = (1 + clearance) * (a.radius + b.radius) - distance;
+    if (!(overlap > 0)) return;
+    worst = std::max(worst, overlap);
+    // two in one corner: apart in any direction
+    const Vec<2> push = distance > 0 ? (0.3 * overlap / distance) * d : Vec<2>{0.3 * overlap, 0};
+    a.centre -= push;
+    b.centre += push;
+  });
+  return worst;
+}
+
+/// The box and its grains without their places: the draw-th diameters.
+BoxSample drawn(const BoxSampleOptions& options, int draw) {
+  BoxSample sample;
+  double area = 0;
+  const std::vector<double> diameters =
+      draw_diameters(options.sizes, options.grains, options.seed, Stream::diameters, draw);
+  for (int i = 0; i < options.grains; ++i) {
+    const double diameter = diameters[i];
+    sample.grains.push_back(
+        {.centre = {},
+         .radius = diameter / 2,
+         .angle = 2 * std::numbers::pi * random_uniform(options.seed, Stream::angles, i)});
+    area += std::numbers::pi * diameter * diameter / 4;
+  }
+  const double side = std::sqrt(area / options.packing_fraction);
+  sample.width = side * std::sqrt(options.aspect);
+  sample.height = side / std::sqrt(options.aspect);
+  return sample;
+}
+
+bool has_room(const BoxSample& sample, double clearance) {
+  const double least = std::min(sample.width, sample.height);
+  return std::ranges::all_of(
+      sample.grains, [&](const PlacedGrain& grain) { return 2 * (1 + clearance) * grain.radius <= least; });
+}
+
+/// Uniform places, the start-th ones, from which overlaps are pushed out. True if none is left.
+bool place(BoxSample& sample, const BoxSampleOptions& options, double clearance, int start, int most_passes) {
+  for (int i = 0; i < options.grains; ++i) {
+    const std::uint64_t number = 2 * (i + static_cast<std::uint64_t>(start) * options.grains);
+    sample.grains[i].centre = {sample.width * random_uniform(options.seed, Stream::places, number),
+                               sample.height * random_uniform(options.seed, Stream::places, number + 1)};
+  }
+  const double tolerance = 1e-3 * clearance * options.sizes.least();
+  for (int pass = 0; pass < most_passes; ++pass)
+    if (push_apart(sample, clearance, options.sizes.greatest() / 2) < tolerance) return true;
+  return false;
+}
+
+/// Other places, less clearance, other diameters, until no grain overlaps; nothing if that does not come.
+std::optional<BoxSample> search(const BoxSampleOptions& options, std::span<const double> shares,
+                                int most_starts) {
+  const int starts = std::clamp(4000 / options.grains, 2, most_starts);
+  const int passes = std::min(200 * options.grains, 5000);
+  const int draws = std::clamp(300 / options.grains, 1, most_draws);
+  for (int draw = 0; draw < draws; ++draw) {
+    BoxSample sample = drawn(options, draw);
+    for (const double share : shares) {
+      const double clearance = share * options.clearance;
+      if (!has_room(sample, clearance)) continue;
+      for (int start = 1; start <= starts; ++start)
+        if (place(sample, options, clearance, start, passes)) return sample;
+    }
+  }
+  return std::nullopt;
+}
+
+void check(const BoxSampleOptions& options) {
+  require(options.grains >= 1, "a sample needs at least one grain, got {}", options.grains);
+  check(options.sizes);
+  require(options.packing_fraction > 0 && options.packing_fraction < 0.8,
+          "the packing fraction of a random sample must be in (0, 0.8), got {}", options.packing_fraction);
+  require(options.aspect > 0, "the aspect of a box must be positive, got {}", options.aspect);
+}
+
+}  // namespace
+
+BoxSample sample_box(const BoxSampleOptions& options) {
+  check(options);
+  BoxSample sample = drawn(options, 0);
+  constexpr int most_passes = 100000;
+  if (has_room(sample, options.clearance) && place(sample, options, options.clearance, 0, most_passes))
+    return sample;
+  if (std::optional<BoxSample> found = search(options, clearance_shares, 40)) return *found;
+  throw UsageError(
+      fmt::format("sample.packing_fraction = {}: no places without overlap for sample.grains = {} in a box "
+                  "of aspect {}; the "
+                  "largest fraction found for them is {:.2f}: use that or less{}",
+                  options.packing_fraction, options.grains, options.aspect, largest_packing_fraction(options),
+                  options.grains < 50 ? ", or more grains" : ""));
+}
+
+double largest_packing_fraction(const BoxSampleOptions& options) {
+  check(options);
+  int low = 0, high = static_cast<int>(std::ceil(100 * options.packing_fraction));  // per cent
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    BoxSampleOptions some = options;
+    some.packing_fraction = 0.01 * middle;
+    (search(some, std::span(clearance_shares).last(1), 5) ? low : high) = middle;
+  }
+  return 0.01 * low;
+}
+
+Box<2> walls_at(double low, double high) {
+  return Box<2>({{.point = {0, low}, .normal = {0, 1}, .velocity = {}},
+                 {.point = {0, high}, .normal = {0, -1}, .velocity = {}}});
+}
+
+Box<2> walls_of(const BoxSample& sample) {
+  return Box<2>({{.point = {0, 0}, .normal = {0, 1}, .velocity = {}},
+                 {.point = {0, sample.height}, .normal = {0, -1}, .velocity = {}},
+                 {.point = {0, 0}, .normal = {1, 0}, .velocity = {}},
+                 {.point = {sample.width, 0}, .normal = {-1, 0}, .velocity = {}}});
+}
+
+std::vector<Misplaced> misplaced_grains(const BoxSample& sample) {
+  std::vector<Misplaced> faults;
+  std::vector<Vec<2>> centres;
+  double widest = 0;
+  const Vec<2> size{sample.width, sample.height};
+  for (const PlacedGrain& grain : sample.grains) {
+    double outside = 0;
+    for (int k = 0; k < 2; ++k)
+      outside = std::max({outside, grain.radius - grain.centre[k], grain.centre[k] + grain.radius - size[k]});
+    if (outside > largest_placed_overlap * grain.radius)
+      faults.push_back({static_cast<int>(centres.size()), -1, outside});
+    centres.push_back(grain.centre);
+    widest = std::max(widest, grain.radius);
+  }
+  CellGrid<2>(centres, 2 * widest).for_each_close_pair([&](int i, int j) {
+    const PlacedGrain &a = sample.grains[i], &b = sample.grains[j];
+    const double depth = a.radius + b.radius - norm(b.centre - a.centre);
+    if (depth > largest_placed_overlap * std::min(a.radius, b.radius)) faults.push_back({j, i, depth});
+  });
+  std::ranges::sort(faults, {}, [](const Misplaced& fault) { return std::pair(fault.grain, fault.other); });
+  return faults;
+}
+
+}  // namespace softgrain

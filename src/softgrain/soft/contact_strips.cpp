@@ -1,0 +1,43 @@
+#include "softgrain/soft/contact_strips.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgrain {
+namespace {
+
+/// Contacts of a strip, about: enough that a thread has something to do.
+constexpr int contacts_per_strip = 64;
+
+}  // namespace
+
+void ContactStrips::sort(std::span<const OutlineContact> contacts, std::span<const Vec<2>> position) {
+  const int n = static_cast<int>(contacts.size());
+  double low = 0, high = 0, reach = 0;  // of a contact's vertices from its slave
+  for (int c = 0; c < n; ++c) {
+    const double x = position[contacts[c].vertex][0];
+    low = c == 0 ? x : std::min(low, x);
+    high = c == 0 ? x : std::max(high, x);
+    contacts[c].for_each_vertex(
+        [&](int vertex, double) { reach = std::max(reach, std::abs(position[vertex][0] - x)); });
+  }
+  // vertices of strip s lie in (s width - reach, (s + 1) width + reach)
+  const double length = high - low, most = reach > 0 ? length / (2.01 * reach) : n;
+  const bool divisible = length > 0 && std::isfinite(length);
+  const int wanted = n / contacts_per_strip;
+  const int strips = divisible ? std::max(1, static_cast<int>(std::min<double>(wanted, most))) : 1;
+  strip_.resize(n);
+  begin.assign(strips + 1, 0);
+  for (int c = 0; c < n; ++c) {
+    const double along = position[contacts[c].vertex][0] - low;
+    strip_[c] = strips == 1 ? 0 : std::min(strips - 1, static_cast<int>(strips * (along / length)));
+    ++begin[strip_[c] + 1];
+  }
+  for (int s = 0; s < strips; ++s) begin[s + 1] += begin[s];
+  order.resize(n);
+  place.resize(n);
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (int c = 0; c < n; ++c) order[place[c] = next[strip_[c]]++] = c;
+}
+
+}  // namespace softgrain

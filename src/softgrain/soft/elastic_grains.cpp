@@ -1,0 +1,185 @@
+#include "softgrain/soft/elastic_grains.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <type_traits>
+#include <variant>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
+#include "softgrain/soft/equilibrium.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Beyond this root mean square of a grain's motion in a step, over its radius, the step was far too long.
+constexpr double largest_motion = 0.5;
+
+/// First grain that moves further than that in dt, or not by a number; -1 if none does.
+int runaway_grain(const SoftGrains& grains, double dt) {
+  std::vector<int> runaway(grains.batches.size(), -1);
+  parallel_for(static_cast<int>(runaway.size()), [&](int b) {
+    const GrainBatch& batch = grains.batches[b];
+    Wide sum = 0.0;
+    for (const Vec<2, Wide>& v : batch.velocity) sum += dot(v, v);
+    const double nodes = static_cast<double>(batch.velocity.size());
+    for (int lane = Wide::size - 1; lane >= 0; --lane)
+      if (batch.grain[lane] >= 0 &&
+          !(dt * std::sqrt(sum[lane] / nodes) < largest_motion * batch.radius[lane]))
+        runaway[b] = batch.grain[lane];
+  });
+  for (const int grain : runaway)
+    if (grain >= 0) return grain;
+  return -1;
+}
+
+/// Of the last correction of Newton's method.
+double residual_limit(const ImplicitOptions& options) { return options.tolerance; }
+
+/// Speed of pressure waves in a grain [m/s].
+double wave_speed(const SoftGrains& grains) {
+  return std::visit([&](const auto& law) { return law.wave_speed(grains.density); }, grains.law);
+}
+
+/// Raises IoError for numbers of sub-steps that cannot be.
+void visit_stable_step(StableStep& stable, StateVisitor& visit) {
+  visit({"stable_step", "s", Owner::run, Role::start, "when the cells were last looked at"}, stable.longest);
+  visit({"until_look", "", Owner::run, Role::start, "sub-steps until they are again"}, stable.until_look);
+  visit({"between_looks", "", Owner::run, Role::start, "sub-steps from one look to the next"},
+        stable.between_looks);
+  constexpr int most = 1000000;
+  if (!(stable.longest >= 0 && stable.until_look >= 0 && stable.until_look <= most &&
+        stable.between_looks >= 1 && stable.between_looks <= most))
+    throw IoError("the snapshot's arrays 'stable_step', 'until_look' and 'between_looks' cannot be");
+}
+
+}  // namespace
+
+template <class Dynamics>
+StepReport ElasticGrains<Dynamics>::step(Box<2>& box, double dt) {
+  dynamics_.walls = box.walls;
+  const SoftStepReport soft = dynamics_.step(dt);
+  if (const int grain = runaway_grain(dynamics_.grains, dynamics_.impulse_time); grain >= 0)
+    throw NumericalError(
+        fmt::format("grain {} moves by more than half its radius in a step; use a smaller time step", grain));
+  for (std::size_t w = 0; w < box.walls.size(); ++w) {
+    box.walls[w].point = dynamics_.walls[w].point;
+    box.impulse[w] = dynamics_.wall_impulse(static_cast<int>(w));
+  }
+  ++sums_.steps;
+  sums_.iterations += soft.iterations;
+  sums_.rejected += soft.rejected;
+  return {.contacts = soft.contacts,
+          .sweeps = soft.sweeps,
+          .residual_mean = soft.residual_mean > 0 ? soft.residual_mean : soft.residual,
+          .residual_max = soft.residual,
+          .residual_limit = residual_limit(dynamics_.options),
+          .overlap_mean = soft.penetration_mean,
+          .overlap_max = soft.penetration_max,
+          .converged = soft.converged};
+}
+
+template <class Dynamics>
+std::vector<double> ElasticGrains<Dynamics>::radii() const {
+  std::vector<double> radius;
+  for (int g = 0; g < dynamics_.grains.size(); ++g) radius.push_back(dynamics_.grains.radius(g));
+  return radius;
+}
+
+template <class Dynamics>
+std::pair<double, double> ElasticGrains<Dynamics>::extent() const {
+  std::vector<Vec<2>> outline;
+  dynamics_.grains.gather_outline(outline);
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
+  for (const Vec<2>& x : outline) least = std::min(least, x[0]), largest = std::max(largest, x[0]);
+  return {least, largest};
+}
+
+template <class Dynamics>
+std::pair<double, double> ElasticGrains<Dynamics>::reach() const {
+  const auto [low, high] = extent();
+  const double margin = 0.1 * (high - low);
+  return {low - margin, high + margin};
+}
+
+template <class Dynamics>
+Energies ElasticGrains<Dynamics>::energies() const {
+  return energies_of(dynamics_.work, dynamics_.grains.kinetic_energy(), stored_energy(dynamics_.grains));
+}
+
+template <class Dynamics>
+Numbers ElasticGrains<Dynamics>::numbers(const Box<2>& box) const {
+  const SoftGrains& grains = dynamics_.grains;
+  Numbers numbers = elastic_numbers(dynamics_.work, stored_energy(grains));
+  const auto contacts = std::ranges::count_if(dynamics_.impulse, [](const Vec<2>& p) { return p[0] > 0; });
+  numbers.emplace_back("contacts", contacts);
+  numbers.emplace_back("least_J", least_J(grains));
+  numbers.emplace_back("iterations", sums_.steps > 0 ? sums_.iterations / sums_.steps : 0);
+  numbers.emplace_back("rejected_steps", sums_.rejected);
+  if (!box.closed()) {
+    double start_area = 0;
+    for (int g = 0; g < grains.size(); ++g) start_area += grains.mass(g) / grains.density;
+    numbers.emplace_back("area_ratio", outlines().area / start_area);
+  }
+  return numbers;
+}
+
+template <class Dynamics>
+SoftView ElasticGrains<Dynamics>::view() const {
+  return {.grains = dynamics_.grains,
+          .contacts = dynamics_.contacts,
+          .impulse = dynamics_.impulse,
+          .impulse_time = dynamics_.impulse_time};
+}
+
+/// The damper takes up the waves that come to a wall, Z = rho c; implicit walls are sought so far as backward
+/// Euler's steps, longer than a wave needs through the box, do not damp them anyway. The mass of explicit
+/// ones is that of an eighth of a full box: less, and the stress of a step shakes the wall.
+template <class Dynamics>
+WallBody ElasticGrains<Dynamics>::wall_body(const Box<2>& box, double dt) const {
+  const double c = wave_speed(dynamics_.grains), rho = density(), height = box.height();
+  if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>)
+    return {.damper = rho * c * std::max(0.0, 1 - c * dt / height)};
+  return {.mass = rho * height / 8, .damper = rho * c, .patience = height / c};
+}
+
+template <class Dynamics>
+void ElasticGrains<Dynamics>::catch_problem() {
+  if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>)
+    dynamics_.caught.emplace();
+  else
+    Model::catch_problem();
+}
+
+template <class Dynamics>
+SolvedContactProblem ElasticGrains<Dynamics>::caught_problem(double dt) {
+  if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>)
+    return *std::exchange(dynamics_.caught, std::nullopt);
+  else
+    return Model::caught_problem(dt);
+}
+
+template <class Dynamics>
+void ElasticGrains<Dynamics>::visit(StateVisitor& visit) {
+  visit_nodes(dynamics_.grains, visit);
+  visit_contacts(dynamics_.grains, static_cast<int>(dynamics_.walls.size()), dynamics_.contacts,
+                 dynamics_.impulse, visit);
+  visit({"impulse_time", "s", Owner::run, Role::start, "the sub-step over which impulses acted"},
+        dynamics_.impulse_time);
+  visit_work(dynamics_.work, visit);
+  visit({"steps_of_row", "", Owner::run, Role::sum, "steps since the last row"}, sums_.steps);
+  visit({"iterations_of_row", "", Owner::run, Role::sum, "iterations since the last row"}, sums_.iterations);
+  visit({"rejected_steps", "", Owner::run, Role::sum, "sub-steps taken back"}, sums_.rejected);
+  if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>) {
+    visit({"sub_step", "s", Owner::run, Role::start, "the longest to try next"}, dynamics_.sub_step);
+  } else {
+    visit_stable_step(dynamics_.stable, visit);
+  }
+}
+
+template class ElasticGrains<ImplicitDynamics>;
+template class ElasticGrains<ExplicitDynamics>;
+
+}  // namespace softgrain

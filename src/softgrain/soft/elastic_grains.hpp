@@ -1,0 +1,54 @@
+#pragma once
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "softgrain/model/model.hpp"
+#include "softgrain/soft/explicit_step.hpp"
+#include "softgrain/soft/implicit_step.hpp"
+#include "softgrain/soft/soft_view.hpp"
+
+namespace softgrain {
+
+/// Soft grains by the material point method on grids that fit them (the paper's MPM-CD, total Lagrangian).
+/// `Dynamics` is ImplicitDynamics or ExplicitDynamics: both hold the same data.
+template <class Dynamics>
+class ElasticGrains final : public Model {
+ public:
+  explicit ElasticGrains(Dynamics dynamics) : dynamics_(std::move(dynamics)) {}
+
+  std::unique_ptr<Model> copy() const override { return std::make_unique<ElasticGrains>(*this); }
+  StepReport step(Box<2>& box, double dt) override;
+  void visit(StateVisitor& visit) override;
+  void begin_row() override { sums_.steps = sums_.iterations = 0; }
+
+  double density() const override { return dynamics_.grains.density; }
+  std::vector<double> radii() const override;
+  std::vector<Vec<2>> centres() const override { return centres_of(dynamics_.grains); }
+  Bodies bodies() const override { return nodes_of(dynamics_.grains); }
+  std::vector<ContactPoint> contacts() const override { return contact_points(view()); }
+  Outlines outlines() const override { return outlines_of(dynamics_.grains); }
+  std::pair<double, double> extent() const override;
+  Energies energies() const override;
+  Numbers numbers(const Box<2>& box) const override;
+  Scene scene(const Box<2>&) const override { return soft_scene(view()); }
+  std::pair<double, double> reach() const override;
+  std::vector<GrainView> grains() const override { return grain_views(dynamics_.grains); }
+  WallBody wall_body(const Box<2>& box, double dt) const override;
+  void catch_problem() override;
+  SolvedContactProblem caught_problem(double dt) override;
+
+  const Dynamics& dynamics() const { return dynamics_; }
+
+ private:
+  /// Steps and iterations since the last row; sub-steps taken back over the run.
+  struct Sums {
+    double steps = 0, iterations = 0, rejected = 0;
+  };
+  SoftView view() const;
+
+  Dynamics dynamics_;
+  Sums sums_;
+};
+
+}  // namespace softgrain

@@ -1,0 +1,299 @@
+#include "softgrain/soft/equilibrium.hpp"
+
+#include <limits>
+#include <variant>
+
+#include "softgrain/material/elastic_law.hpp"
+#include "softgrain/math/tensor.hpp"
+#include "softgrain/soft/cell_in_lanes.hpp"
+
+// flatten: without it g++ leaves sums of vectors as calls in the innermost loops, 2.7 times the time of a
+// force
+
+namespace softgrain {
+namespace {
+
+using WideMat = Mat<2, Wide>;
+
+/// Q of a batch: by which each grain was turned when it was placed.
+WideMat placed_rotation(const GrainBatch& batch) {
+  const auto& [c, s] = batch.placed_along.c;
+  return {{c, -s, s, c}};
+}
+
+/// The four points of a cell in the eight grains: F of each. A law that is not objective needs F = 1 in the
+/// grain as it was placed: it sees Q^T F, which to an isotropic law is as good as F Q^T, and its forces are
+/// turned back by Q.
+struct CellState {
+  CellState(const GrainBatch& batch, int cell_index, bool turned_back)
+      : cell(batch.topology->grid.cell[cell_index]),
+        points(&batch.topology->points[4 * cell_index]),
+        volume(1 / batch.topology->cell_shapes[cell_index].inverse_volume) {
+    // F = sum_a x_a (x) dN_a/dX = sum_(a > 0) (x_a - x_0) (x) dN_a/dX, as sum_a N_a = 1
+    const Wide inverse_radius = 1.0 / batch.radius;
+    std::array<Vec<2, Wide>, 4> edge;
+    for (int a = 1; a < 4; ++a)
+      edge[a] = inverse_radius * (batch.position[cell[a]] - batch.position[cell[0]]);
+    if (turned_back)
+      for (int a = 1; a < 4; ++a) edge[a] = transpose(placed_rotation(batch)) * edge[a];
+    for (int p = 0; p < 4; ++p) {
+      const auto& g = points[p].gradient;
+      for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 2; ++j)
+          F[p](i, j) = edge[1][i] * g[1][j] + edge[2][i] * g[2][j] + edge[3][i] * g[3][j];
+    }
+  }
+  /// Mean of theta over the cell, weighted by volume.
+  template <class Dilatation>
+  Wide mean(const Dilatation& theta) const {
+    Wide sum = 0.0;
+    for (int p = 0; p < 4; ++p) sum += points[p].volume * theta.value(F[p]);
+    return sum * Wide(1 / volume);
+  }
+
+  const std::array<int, 4>& cell;
+  const MaterialPoint* points;
+  double volume;  ///< [R^2]
+  std::array<WideMat, 4> F;
+};
+
+/// visit(cell, state) for all cells of a batch.
+template <class Law, class Visit>
+void for_each_cell(const Law&, const GrainBatch& batch, Visit&& visit) {
+  for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell)
+    visit(cell, CellState(batch, cell, !Law::objective));
+}
+
+/// The lanes in which some J was not positive.
+class InvertedLanes {
+ public:
+  void note(const Wide& J) { some_ = select(J > 0.0, some_, J); }
+  unsigned lanes() const {
+    unsigned found = 0;
+    for (int lane = 0; lane < Wide::size; ++lane)
+      if (!(some_[lane] > 0)) found |= 1u << lane;
+    return found;
+  }
+
+ private:
+  Wide some_ = 1.0;  // a J that is not positive, else 1
+};
+
+/// Forces on the nodes of a cell; that on the first balances the others.
+class CellForce {
+ public:
+  /// V P . dN_a/dX of the first point (not zero and then `add`: clearing took a tenth of the time)
+  CellForce(const WideMat& P, const MaterialPoint& point) {
+    for (int a = 1; a < 4; ++a) node_[a] = of_point(P, point, a);
+  }
+  void add(const WideMat& P, const MaterialPoint& point) {
+    for (int a = 1; a < 4; ++a) node_[a] += of_point(P, point, a);
+  }
+  /// f <- Q f
+  void turn(const WideMat& Q) {
+    for (int a = 1; a < 4; ++a) node_[a] = Q * node_[a];
+  }
+  /// With R^2 of the volume and 1/R of the gradient.
+  void add_to(WideVectors& force, const std::array<int, 4>& cell, Wide radius) {
+    for (int a = 1; a < 4; ++a) {
+      node_[a] *= radius;
+      force[cell[a]] += node_[a];
+      force[cell[0]] -= node_[a];
+    }
+  }
+
+ private:
+  static Vec<2, Wide> of_point(const WideMat& P, const MaterialPoint& point, int a) {
+    const Vec<2> g = point.volume * point.gradient[a];
+    return {P(0, 0) * g[0] + P(0, 1) * g[1], P(1, 0) * g[0] + P(1, 1) * g[1]};
+  }
+  std::array<Vec<2, Wide>, 4> node_;
+};
+
+/// P = dpsi_dev/dF + U'(mean theta) dtheta/dF at each point.
+template <class Law>
+[[gnu::flatten]] CellForce cell_force(const Law& law, const CellState& state, InvertedLanes& inverted) {
+  const auto theta = law.dilatation();
+  const Wide pressure = law.volume().derivative(state.mean(theta));
+  const auto stress = [&](int p) {
+    inverted.note(determinant(state.F[p]));
+    return law.deviatoric().stress(state.F[p]) + pressure * theta.gradient(state.F[p]);
+  };
+  CellForce force(stress(0), state.points[0]);
+  for (int p = 1; p < 4; ++p) force.add(stress(p), state.points[p]);
+  return force;
+}
+
+template <class Law>
+unsigned add_forces(const Law& law, const GrainBatch& batch, WideVectors& force) {
+  InvertedLanes inverted;
+  for_each_cell(law, batch, [&](int, const CellState& state) {
+    CellForce of_cell = cell_force(law, state, inverted);
+    if (!Law::objective) of_cell.turn(placed_rotation(batch));
+    of_cell.add_to(force, state.cell, batch.radius);
+  });
+  return inverted.lanes();
+}
+
+template <HasCofactorFactors Law>
+[[gnu::flatten]] unsigned add_forces(const Law& law, const GrainBatch& batch, WideVectors& force) {
+  const Topology& topology = *batch.topology;
+  const Wide inverse_square_radius = 1.0 / (batch.radius * batch.radius);
+  InvertedLanes inverted;
+  for (std::size_t c = 0; c < topology.grid.cell.size(); ++c) {
+    const std::array<int, 4>& nodes = topology.grid.cell[c];
+    const CellShape& shape = topology.cell_shapes[c];
+    const CellInLanes cell(batch.position, nodes);
+    const std::array<Wide, 4> J = cell.J(shape, inverse_square_radius);
+    for (const Wide& of_point : J) inverted.note(of_point);
+    const Wide mean_J = cell.mean_J(shape, inverse_square_radius);
+    cell.add_force(shape, law.mu, law.cofactor_factors(J, mean_J), nodes, force);
+  }
+  return inverted.lanes();
+}
+
+/// K_ab += V g_a . A . g_b
+void add_point_stiffness(const Mat<4, Wide>& A, const MaterialPoint& point, CellStiffness& K) {
+  int pair = 0;
+  for (int a = 0; a < 4; ++a) {
+    const Vec<2>& g_a = point.gradient[a];
+    std::array<Wide, 8> row;  // V sum_J A_iJkL g_a,J at 4 i + 2 k + L
+    for (int i = 0; i < 2; ++i)
+      for (int kL = 0; kL < 4; ++kL)
+        row[4 * i + kL] = point.volume * (g_a[0] * A(2 * i, kL) + g_a[1] * A(2 * i + 1, kL));
+    for (int b = 0; b <= a; ++b, ++pair) {
+      const Vec<2>& g_b = point.gradient[b];
+      for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 2; ++k)
+          K[pair][2 * i + k] += row[4 * i + 2 * k] * g_b[0] + row[4 * i + 2 * k + 1] * g_b[1];
+    }
+  }
+}
+
+/// K_ab += V U'' dtheta/dx_a (x) dtheta/dx_b, theta the mean over the cell
+void add_bulk_stiffness(const Wide& second_derivative, const std::array<Vec<2, Wide>, 4>& dtheta,
+                        CellStiffness& K) {
+  int pair = 0;
+  for (int a = 0; a < 4; ++a) {
+    const Vec<2, Wide> weighted = second_derivative * dtheta[a];
+    for (int b = 0; b <= a; ++b, ++pair)
+      for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 2; ++k) K[pair][2 * i + k] += weighted[i] * dtheta[b][k];
+  }
+}
+
+template <class Law>
+[[gnu::flatten]] void cell_stiffness(const Law& law, const CellState& state, CellStiffness& K) {
+  const auto theta = law.dilatation();
+  const Wide mean = state.mean(theta);
+  const Wide pressure = law.volume().derivative(mean);
+  std::array<Vec<2, Wide>, 4> dtheta{};  // of sum_p V_p theta_p
+  for (int p = 0; p < 4; ++p) {
+    const MaterialPoint& point = state.points[p];
+    Mat<4, Wide> A = law.deviatoric().tangent(state.F[p]);
+    theta.add_second_derivative(A, pressure, state.F[p]);
+    add_point_stiffness(A, point, K);
+    const WideMat gradient = theta.gradient(state.F[p]);
+    for (int a = 0; a < 4; ++a)
+      for (int i = 0; i < 2; ++i)
+        dtheta[a][i] +=
+            point.volume * (gradient(i, 0) * point.gradient[a][0] + gradient(i, 1) * point.gradient[a][1]);
+  }
+  add_bulk_stiffness(law.volume().second_derivative(mean) * Wide(1 / state.volume), dtheta, K);
+}
+
+/// K_ab <- Q K_ab Q^T
+void turn(const WideMat& Q, CellStiffness& K) {
+  for (auto& k : K) k = (Q * WideMat{k} * transpose(Q)).c;
+}
+
+template <class Law>
+[[gnu::flatten]] Wide cell_energy(const Law& law, const CellState& state) {
+  Wide sum = state.volume * law.volume().energy(state.mean(law.dilatation()));
+  for (int p = 0; p < 4; ++p) sum += state.points[p].volume * law.deviatoric().energy(state.F[p]);
+  return sum;
+}
+
+/// Points of one lane.
+template <class Law>
+void add_point_states(const Law& law, const CellState& state, const Mat<2>& Q, int lane,
+                      std::vector<PointState>& states) {
+  const Wide pressure = law.volume().derivative(state.mean(law.dilatation()));
+  for (int p = 0; p < 4; ++p) {
+    Mat<2> F;
+    for (std::size_t k = 0; k < 4; ++k) F.c[k] = state.F[p].c[k][lane];
+    PointState point{.F = (Law::objective ? F : Q * F) * transpose(Q), .stress = {}, .pressure = 0};
+    const Mat<2> P = law.deviatoric().stress(point.F) + pressure[lane] * law.dilatation().gradient(point.F);
+    point.stress = (1 / determinant(point.F)) * (P * transpose(point.F));
+    point.pressure = -trace(point.stress) / 2;
+    states.push_back(point);
+  }
+}
+
+}  // namespace
+
+unsigned internal_force(const SoftGrains& grains, const GrainBatch& batch, WideVectors& force) {
+  force.assign(batch.position.size(), {});
+  return std::visit([&](const auto& law) { return add_forces(law, batch, force); }, grains.law);
+}
+
+void for_each_cell_stiffness(const SoftGrains& grains, const GrainBatch& batch,
+                             const std::function<void(int cell, const CellStiffness& K)>& visit) {
+  std::visit(
+      [&]<class Law>(const Law& law) {
+        for_each_cell(law, batch, [&](int cell, const CellState& state) {
+          CellStiffness K{};
+          cell_stiffness(law, state, K);
+          if (!Law::objective) turn(placed_rotation(batch), K);
+          visit(cell, K);
+        });
+      },
+      grains.law);
+}
+
+void add_stiffness(const SoftGrains& grains, const GrainBatch& batch, BatchedCholesky& matrix) {
+  for_each_cell_stiffness(grains, batch, [&](int cell, const CellStiffness& K) {
+    for (int pair = 0; pair < 10; ++pair) {
+      const CellBlock& to = batch.topology->cell_blocks[10 * cell + pair];
+      const auto& k = K[pair];
+      matrix.add_block(to.block, to.transposed ? std::array<Wide, 4>{k[0], k[2], k[1], k[3]} : k);
+    }
+  });
+}
+
+Wide elastic_energy(const SoftGrains& grains, const GrainBatch& batch) {
+  Wide sum = 0.0;
+  std::visit(
+      [&](const auto& law) {
+        for_each_cell(law, batch, [&](int, const CellState& state) { sum += cell_energy(law, state); });
+      },
+      grains.law);
+  return sum * (batch.radius * batch.radius);
+}
+
+Wide least_J(const GrainBatch& batch) {
+  Wide least = std::numeric_limits<double>::infinity();
+  for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell) {
+    const CellState state(batch, cell, false);
+    for (const WideMat& F : state.F) least = min(determinant(F), least);
+  }
+  return least;
+}
+
+std::vector<PointState> point_states(const SoftGrains& grains, int grain) {
+  const auto place = grains.batch_of(grain);
+  const GrainBatch* batch = place.first;  // not a structured binding: clang 14 keeps those out of lambdas
+  const int lane = place.second;
+  Mat<2> Q;
+  for (std::size_t k = 0; k < 4; ++k) Q.c[k] = placed_rotation(*batch).c[k][lane];
+  std::vector<PointState> states;
+  std::visit(
+      [&](const auto& law) {
+        for_each_cell(law, *batch,
+                      [&](int, const CellState& state) { add_point_states(law, state, Q, lane, states); });
+      },
+      grains.law);
+  return states;
+}
+
+}  // namespace softgrain

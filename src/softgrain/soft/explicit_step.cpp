@@ -1,0 +1,263 @@
+#include "softgrain/soft/explicit_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "softgrain/contact/nlgs.hpp"
+#include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
+#include "softgrain/soft/contact_work.hpp"
+#include "softgrain/soft/equilibrium.hpp"
+#include "softgrain/soft/wall_couple.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Contacts are looked for up to this gap at the end of the free flight, in units of a segment of the
+/// outline: the impulses of a stable step move a vertex by a few hundredths of it.
+constexpr double contact_margin = 0.1;
+
+/// Contacts that a thread takes at once.
+constexpr int contacts_at_once = 256;
+
+/// Sub-steps between two looks at the cells: fewer after a change of the stable step by more than half of
+/// what it lies above the sub-step, more after one by less than an eighth of that.
+constexpr int fewest_between_looks = 16, most_between_looks = 256;
+constexpr double much = 0.5, little = 0.125;
+
+/// Share of the stable step that is taken, since cells change between two looks.
+constexpr double share_taken = 0.97;
+
+/// A step that needs more sub-steps than this has crushed cells.
+constexpr double most_sub_steps = 2000;
+
+Vec<2> lane_of(const Vec<2, Wide>& v, int lane) { return {v[0][lane], v[1][lane]}; }
+
+}  // namespace
+
+ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
+                                   const ExplicitOptions& explicit_options)
+    : grains(std::move(soft_grains)), walls(std::move(plates)), options(explicit_options) {
+  require(grains.size() > 0, "there is no grain");
+  require(options.damping >= 0, "damping must be >= 0, got {} 1/s", options.damping);
+  require(options.friction >= 0 && options.wall_friction >= 0, "friction must be >= 0, got {} and {}",
+          options.friction, options.wall_friction);
+  smallest_radius_ = grains.radius(0);
+  for (int g = 0; g < grains.size(); ++g) {
+    mean_radius_ += grains.radius(g) / grains.size();
+    smallest_radius_ = std::min(smallest_radius_, grains.radius(g));
+    const Topology& shape = grains.topology(g);
+    for (int i = shape.grid.outline_begin; i < shape.grid.nodes(); ++i)
+      inverse_mass_.push_back(1 /
+                              (grains.density * shape.node_volume[i] * grains.radius(g) * grains.radius(g)));
+  }
+  for (auto* of_vertices :
+       {&outline_velocity_, &outline_velocity_start_, &outline_.start, &outline_.position})
+    of_vertices->resize(grains.outline_size());
+  batch_step_.resize(grains.batches.size());
+}
+
+SoftStepReport ExplicitDynamics::step(double dt) {
+  SoftStepReport report{.converged = true};
+  wall_impulse_.assign(walls.size(), {});
+  double rest = dt;
+  while (rest > 0) {
+    if (stable.until_look == 0) look_at_cells(rest);
+    --stable.until_look;
+    const double count = sub_steps(rest);
+    if (!(count <= most_sub_steps))
+      throw NumericalError(
+          fmt::format("cells are crushed: the stable step has fallen to {:.3g} s, {:.0f} times less than the "
+                      "time step; stop at a smaller strain",
+                      stable.longest, dt / stable.longest));
+    sub_step(rest / count, report);
+    rest = count > 1 ? rest - rest / count : 0;
+  }
+  return report;
+}
+
+double ExplicitDynamics::sub_steps(double dt) const {
+  return std::max(1.0, std::ceil(dt / (share_taken * stable.longest) * (1 - 1e-12)));
+}
+
+void ExplicitDynamics::look_at_cells(double dt) {
+  const double longest = longest_stable_step(grains, options.damping_share);
+  const double change = std::abs(longest - stable.longest);
+  stable.longest = longest;
+  const double margin = longest - dt / sub_steps(dt);
+  if (change > much * margin)
+    stable.between_looks = std::max(fewest_between_looks, stable.between_looks / 2);
+  else if (change < little * margin)
+    stable.between_looks = std::min(most_between_looks, 2 * stable.between_looks);
+  stable.until_look = stable.between_looks;
+}
+
+void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
+  check_wall_motion(walls, dt, smallest_radius_);
+  damping_ = {options.damping, dt, walls};
+  take_back_spin();
+  // contacts where x + dt v will be
+  fly_outline(dt);
+  for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
+  outline_.walls = walls;
+  outline_.dt = dt;
+  std::vector<OutlineContact> found = neighbours_.detect(grains, outline_, contact_margin);
+  impulse = carried_impulses(grains, contacts, impulse, found);
+  if (impulse_time > 0 && impulse_time != dt)
+    for (Vec<2>& p : impulse) p *= dt / impulse_time;  // the same force
+  contacts = std::move(found);
+
+  LumpedContacts system(contacts, outline_, outline_velocity_, inverse_mass_, lumped_scratch_);
+  kick(dt);
+  std::vector<double> friction;
+  for (const OutlineContact& c : contacts)
+    friction.push_back(c.wall >= 0 ? options.wall_friction : options.friction);
+  system.apply_impulses(impulse);
+  SolverOptions solver = options.solver;
+  solver.velocity_scale = mean_radius_ / dt;
+  const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction, solver);
+  impulse_time = dt;
+  drift_outline(dt);
+  add_contact_work(dt);
+
+  ++report.iterations;
+  report.sweeps += solved.sweeps;
+  report.residual_mean = std::max(report.residual_mean, solved.residual_mean);
+  report.residual = std::max(report.residual, solved.residual_max);
+  report.converged = report.converged && solved.converged;
+  report.contacts = static_cast<int>(std::ranges::count_if(impulse, [](auto& p) { return p[0] != 0; }));
+  add_penetration(report);
+}
+
+/// Of grains that frictionless walls alone touch: what they gave in the step before.
+void ExplicitDynamics::take_back_spin() {
+  if (options.wall_friction > 0) return;
+  const std::vector<Wide> alone = grains_on_walls_alone(grains, contacts);
+  if (std::ranges::none_of(alone, [](const Wide& of_batch) { return any(of_batch > 0.0); })) return;
+  grains.gather_outline(outline_.start);
+  work.contacts -= turn_back(grains, alone, contacts, impulse, outline_.start);
+}
+
+/// Where the outlines are, and where they would be after dt without forces.
+void ExplicitDynamics::fly_outline(double dt) {
+  parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
+    const GrainBatch& batch = grains.batches[b];
+    grains.for_each_vertex(batch, [&](int v, int i, int lane) {
+      outline_velocity_[v] = outline_velocity_start_[v] = lane_of(batch.velocity[i], lane);
+      outline_.start[v] = lane_of(batch.position[i], lane);
+      outline_.position[v] = outline_.start[v] + dt * outline_velocity_[v];
+    });
+  });
+}
+
+/// v_free = v + dt M^-1 (f_ext - f_int), and within the grains, where v_free = v+, x+ = x + dt v+.
+void ExplicitDynamics::kick(double dt) {
+  std::vector<int> inverted(grains.batches.size(), -1);
+  parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
+    thread_local WideVectors force;  // of this batch only: it stays in the processor's cache
+    GrainBatch& batch = grains.batches[b];
+    if (options.damping_share > 0)
+      for (std::size_t i = 0; i < batch.position.size(); ++i)
+        batch.position[i] += Wide(options.damping_share * dt) * batch.velocity[i];
+    inverted[b] = batch.grain_in(internal_force(grains, batch, force));
+    if (inverted[b] >= 0) return;
+    kick_batch(dt, force, batch, batch_step_[b]);
+    grains.for_each_vertex(
+        batch, [&](int v, int i, int lane) { outline_velocity_[v] = lane_of(batch.velocity[i], lane); });
+  });
+  for (const int grain : inverted)
+    if (grain >= 0)
+      throw NumericalError(
+          fmt::format("a material point of grain {} is turned inside out; use a smaller time step", grain));
+}
+
+Vec<2, Wide> ExplicitDynamics::weight(const GrainBatch& batch, int node) const {
+  const Wide mass = grains.node_mass(batch, node);
+  return {options.gravity[0] * mass, options.gravity[1] * mass};
+}
+
+void ExplicitDynamics::kick_batch(double dt, const WideVectors& force, GrainBatch& batch,
+                                  BatchStep& step) const {
+  const Topology& topology = *batch.topology;
+  const int outline_begin = topology.grid.outline_begin;
+  step.force.assign(force.begin() + outline_begin, force.end());
+  step.velocity.assign(batch.velocity.begin() + outline_begin, batch.velocity.end());
+  step.internal = step.gravity = step.damping = 0.0;
+  const Wide scale = Wide(dt) / (grains.density * (batch.radius * batch.radius));
+  for (int i = 0; i < topology.grid.nodes(); ++i) {
+    const Vec<2, Wide> v = batch.velocity[i];
+    const Wide rate = scale * Wide(1 / topology.node_volume[i]);
+    for (int d = 0; d < 2; ++d) batch.velocity[i][d] += dt * options.gravity[d] - rate * force[i][d];
+    batch.position[i] -= Wide(options.damping_share * dt) * v;
+    Vec<2, Wide> damped{};
+    if (options.damping > 0) batch.velocity[i] += damped = damping_.velocity_change(batch.position[i], v);
+    if (i >= outline_begin) continue;
+    batch.position[i] += Wide(dt) * batch.velocity[i];
+    step.add_work(force[i], weight(batch, i), Wide(dt / 2) * (v + batch.velocity[i]));
+    step.damping -= grains.node_mass(batch, i) * (0.5 * dot(damped, v + batch.velocity[i]));
+  }
+}
+
+/// x+ = x + dt v+ of the outlines. The work over the step is that of a motion by dt (v+ + v)/2, in which
+/// M (v+ - v) does dK.
+void ExplicitDynamics::drift_outline(double dt) {
+  parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
+    GrainBatch& batch = grains.batches[b];
+    BatchStep& step = batch_step_[b];
+    grains.for_each_vertex(batch, [&](int v, int i, int lane) {
+      for (int d = 0; d < 2; ++d) batch.velocity[i][d].set(lane, outline_velocity_[v][d]);
+    });
+    const ReferenceGrid& grid = batch.topology->grid;
+    for (int i = grid.outline_begin, k = 0; i < grid.nodes(); ++i, ++k) {
+      const Vec<2, Wide> twice = step.velocity[k] + batch.velocity[i];
+      if (options.damping > 0)
+        step.damping -= grains.node_mass(batch, i) *
+                        (0.5 * dot(damping_.velocity_change(batch.position[i], step.velocity[k]), twice));
+      batch.position[i] += Wide(dt) * batch.velocity[i];
+      step.add_work(step.force[k], weight(batch, i), Wide(dt / 2) * twice);
+    }
+    grains.for_each_vertex(
+        batch, [&](int v, int i, int lane) { outline_.position[v] = lane_of(batch.position[i], lane); });
+  });
+  for (std::size_t b = 0; b < grains.batches.size(); ++b)
+    for (int lane = 0; lane < Wide::size && grains.batches[b].grain[lane] >= 0; ++lane) {
+      work.internal += batch_step_[b].internal[lane];
+      work.gravity += batch_step_[b].gravity[lane];
+      work.damping += batch_step_[b].damping[lane];
+    }
+}
+
+/// Of the contacts that carry impulse, over the smallest radius.
+void ExplicitDynamics::add_penetration(SoftStepReport& report) const {
+  const int count = static_cast<int>(contacts.size());
+  struct Depths {
+    double deepest = 0, sum = 0;
+    int carrying = 0;
+  };
+  std::vector<Depths> depths((count + contacts_at_once - 1) / contacts_at_once);
+  parallel_for(static_cast<int>(depths.size()), [&](int k) {
+    for (int c = k * contacts_at_once; c < std::min(count, (k + 1) * contacts_at_once); ++c) {
+      if (impulse[c][0] == 0) continue;
+      const double depth = std::max(0.0, -gap_now(contacts[c], outline_));
+      depths[k].deepest = std::max(depths[k].deepest, depth);
+      depths[k].sum += depth;
+      ++depths[k].carrying;
+    }
+  });
+  Depths all;
+  for (const Depths& part : depths) {
+    all.deepest = std::max(all.deepest, part.deepest);
+    all.sum += part.sum;
+    all.carrying += part.carrying;
+  }
+  report.penetration_max = std::max(report.penetration_max, all.deepest / smallest_radius_);
+  report.penetration_mean = all.carrying > 0 ? all.sum / all.carrying / smallest_radius_ : 0;
+}
+
+void ExplicitDynamics::add_contact_work(double dt) {
+  for (std::size_t v = 0; v < outline_velocity_.size(); ++v)  // moved by (v+ + v)/2 dt
+    outline_.position[v] = outline_.start[v] + dt / 2 * (outline_velocity_[v] + outline_velocity_start_[v]);
+  softgrain::add_contact_work(contacts, impulse, outline_, work, wall_impulse_);
+}
+
+}  // namespace softgrain

@@ -1,0 +1,98 @@
+#pragma once
+#include <vector>
+
+#include "softgrain/contact/solver_options.hpp"
+#include "softgrain/geometry/wall_motion.hpp"
+#include "softgrain/model/soft_step_report.hpp"
+#include "softgrain/model/work_budget.hpp"
+#include "softgrain/soft/lumped_contacts.hpp"
+#include "softgrain/soft/outline_contacts.hpp"
+#include "softgrain/soft/soft_grains.hpp"
+#include "softgrain/soft/stable_step.hpp"
+
+namespace softgrain {
+
+struct ExplicitOptions {
+  /// beta: internal forces are taken at x + beta dt v, which damps the mesh's own vibrations
+  double damping_share = 0;
+  SolverOptions solver{
+      .max_sweeps = 200, .tolerance = 4.5e-6, .relaxation = 1.4};  ///< NLGS; in units of mean radius / dt
+  double friction = 0;
+  double wall_friction = 0;
+  Vec<2> gravity{};    ///< [m/s^2]
+  double damping = 0;  ///< zeta [1/s], see MassDamping
+};
+
+/// That SoftStepReport::residual has to reach: of the worst contact.
+inline double residual_limit(const ExplicitOptions& options) {
+  return options.solver.worst_factor * options.solver.tolerance;
+}
+
+/// What is known of the longest stable step; saved with a checkpoint.
+struct StableStep {
+  double longest = 0;  ///< [s] when the cells were last looked at
+  int until_look = 0;  ///< sub-steps until they are again
+  int between_looks = 16;
+};
+
+/// Soft grains between walls by symplectic Euler with contact dynamics, on the same data as ImplicitDynamics:
+///   v_free = v + dt M^-1 (f_ext - f_int(x)),  v+ = v_free + M^-1 H p,  x+ = x + dt v+,
+///   0 <= g(x+) _|_ p_n >= 0,  |p_t| <= mu p_n,
+/// with g(x+) linear about x + dt v: at x itself, sliding along an edge would drive vertices into it.
+class ExplicitDynamics {
+ public:
+  ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
+                   const ExplicitOptions& explicit_options);
+
+  /// One step of dt, in equal sub-steps of at most longest_stable_step: cells are looked at again every so
+  /// many of them, more often while they change. Raises NumericalError if a point is inverted or cells are so
+  /// deformed that thousands of sub-steps would be needed, naming the grain, and as check_wall_motion.
+  SoftStepReport step(double dt);
+
+  const Vec<2>& wall_impulse(int wall) const { return wall_impulse_[wall]; }
+  double mean_radius() const { return mean_radius_; }
+
+  SoftGrains grains;
+  std::vector<Wall<2>> walls;
+  ExplicitOptions options;
+  std::vector<OutlineContact> contacts;
+  std::vector<Vec<2>> impulse;
+  double impulse_time = 0;  ///< the step over which they acted [s]
+  WorkBudget work;          ///< since the start; there is no `inertia`
+  StableStep stable;
+
+ private:
+  /// Of a batch: its outline's nodes at the start of the step, and the work over the step.
+  struct BatchStep {
+    WideVectors force, velocity;
+    Wide internal = 0.0, gravity = 0.0, damping = 0.0;
+
+    void add_work(const Vec<2, Wide>& internal_force, const Vec<2, Wide>& weight, const Vec<2, Wide>& moved) {
+      internal += dot(internal_force, moved);
+      gravity += dot(weight, moved);
+    }
+  };
+  Vec<2, Wide> weight(const GrainBatch& batch, int node) const;
+  void look_at_cells(double dt);
+  double sub_steps(double dt) const;
+  void sub_step(double dt, SoftStepReport& report);
+  void take_back_spin();
+  void fly_outline(double dt);
+  void kick(double dt);
+  void kick_batch(double dt, const WideVectors& force, GrainBatch& batch, BatchStep& step) const;
+  void drift_outline(double dt);
+  void add_contact_work(double dt);
+  void add_penetration(SoftStepReport& report) const;
+
+  double mean_radius_ = 0, smallest_radius_ = 0;
+  OutlineNeighbours neighbours_;
+  OutlineState outline_;
+  std::vector<Vec<2>> outline_velocity_, outline_velocity_start_;
+  std::vector<double> inverse_mass_;  // (outline vertices)
+  std::vector<Vec<2>> wall_impulse_;
+  LumpedContacts::Scratch lumped_scratch_;
+  std::vector<BatchStep> batch_step_;
+  MassDamping damping_;
+};
+
+}  // namespace softgrain

@@ -1,0 +1,98 @@
+#include "softgrain/contact/assemble.hpp"
+#include "softgrain/core/parallel.hpp"
+#include "softgrain/soft/contact_work.hpp"
+#include "softgrain/soft/implicit_step.hpp"
+
+namespace softgrain {
+
+/// Before the contacts are found anew: the system of the last iteration, free of impulses.
+void ImplicitDynamics::catch_problem(double dt) {
+  ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt, scratch_);
+  caught = {contact_problem_of<2>(system, friction_of_contacts()), flat<2>(impulse)};
+}
+
+/// What Newton's tolerance left of the momentum is given back to each grain as a whole, and to a grain that
+/// touches none what backward Euler took of its angular momentum about the centre:
+///   sum_i m_i (v - v_n)_i = dt f_ext + H p,   L = L_n + dt sum_i (x - x_c)_i x f_i.
+/// A step whose inertia A does not have gives a grain that touches others no more than one more correction
+/// would, and no spin. What this changes of the kinetic energy, backward Euler had taken.
+void ImplicitDynamics::balance_momentum(double dt) {
+  const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
+  const double t = step_of_matrix(dt);
+  std::vector<Wide> given(batches());  // kinetic energy
+  parallel_for(batches(), [&](int b) {
+    GrainBatch& batch = grains.batches[b];
+    WideVectors outer(batch.position.size());
+    grains.scatter_outline(force, batch, outer);
+    const auto cross = [](const Vec<2, Wide>& u, const Vec<2, Wide>& v) { return u[0] * v[1] - u[1] * v[0]; };
+    const int nodes = batch.topology->grid.nodes();
+    Wide mass = 0.0, inertia = 0.0, spin = 0.0, load = 0.0, kinetic = 0.0;
+    Vec<2, Wide> sum{}, first{}, first_start{};
+    for (int i = 0; i < nodes; ++i) {
+      const Wide m = grains.node_mass(batch, i);
+      mass += m;
+      first += m * batch.position[i];
+      first_start += m * start_[b][i];
+    }
+    const Vec<2, Wide> centre = (1.0 / mass) * first, centre_start = (1.0 / mass) * first_start;
+    for (int i = 0; i < nodes; ++i) {
+      const Wide m = grains.node_mass(batch, i);
+      const Vec<2, Wide> flight = flight_velocity(b, i), x = batch.position[i] - centre;
+      Vec<2, Wide> change;  // dt f
+      for (int d = 0; d < 2; ++d) {
+        change[d] = dt * (outer[i][d] + m * Wide(options.gravity[d]));
+        sum[d] += change[d] - m * (batch.velocity[i][d] - flight[d]);
+        change[d] -= dt * force_[b][i][d];
+      }
+      inertia += m * dot(x, x);
+      load += dot(outer[i], outer[i]);
+      spin +=
+          m * (cross(start_[b][i] - centre_start, flight) - cross(x, batch.velocity[i])) + cross(x, change);
+      kinetic -= 0.5 * m * dot(batch.velocity[i], batch.velocity[i]);
+    }
+    const Wide touching = t * t / (dt * dt), share = touching + flying_[b] * (Wide(1) - touching);
+    const Vec<2, Wide> dv = (share / mass) * sum;
+    const Wide turn = t < dt ? Wide(0) : select(load <= 0.0, spin / inertia, Wide(0));
+    for (int i = 0; i < nodes; ++i) {
+      Vec<2, Wide>& v = batch.velocity[i];
+      v += dv + turn * Vec<2, Wide>{-(batch.position[i][1] - centre[1]), batch.position[i][0] - centre[0]};
+      kinetic += 0.5 * grains.node_mass(batch, i) * dot(v, v);
+    }
+    given[b] = kinetic;
+  });
+  for (int b = 0; b < batches(); ++b)
+    for (int lane = 0; lane < Wide::size && grains.batches[b].grain[lane] >= 0; ++lane)
+      work.inertia -= given[b][lane];
+}
+
+void ImplicitDynamics::add_work() {
+  struct Share {
+    Wide internal = 0.0, inertia = 0.0, gravity = 0.0, damping = 0.0;
+  };
+  std::vector<Share> shares(grains.batches.size());
+  parallel_for(batches(), [&](int b) {
+    const GrainBatch& batch = grains.batches[b];
+    auto& [internal, inertia, gravity, damping] = shares[b];
+    for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
+      const Wide m = grains.node_mass(batch, i);
+      const Vec<2, Wide> moved = batch.position[i] - start_[b][i];
+      const Vec<2, Wide> dv = Wide(1 / outline_.dt) * moved - velocity_start_[b][i];
+      internal += dot(force_[b][i], moved);
+      inertia += 0.5 * m * dot(dv, dv);
+      if (options.damping > 0)  // - f . dx = m (v_n - flight)/dt . dx
+        damping += m * Wide(1 / outline_.dt) * dot(velocity_start_[b][i] - flight_velocity(b, i), moved);
+      gravity += m * (options.gravity[0] * moved[0] + options.gravity[1] * moved[1]);
+    }
+  });
+  for (std::size_t b = 0; b < grains.batches.size(); ++b)
+    for (int lane = 0; lane < Wide::size && grains.batches[b].grain[lane] >= 0; ++lane) {
+      work.internal += shares[b].internal[lane];
+      work.inertia += shares[b].inertia[lane];
+      work.gravity += shares[b].gravity[lane];
+      work.damping += shares[b].damping[lane];
+      work.contacts += held_[b].couple[lane] * held_[b].wanted[lane];
+    }
+  add_contact_work(contacts, impulse, outline_, work, wall_impulse_);
+}
+
+}  // namespace softgrain

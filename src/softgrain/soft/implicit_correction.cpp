@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "softgrain/core/parallel.hpp"
+#include "softgrain/soft/implicit_step.hpp"
+
+namespace softgrain {
+namespace {
+
+/// The secant may take a grain at most this many corrections further, and back no further than it came.
+constexpr double furthest = 4;
+
+/// Of a quasi-static step: its largest correction, and the unbalanced force of a grain over its contact
+/// force, in tolerances (docs/decisions/0023).
+constexpr double quasi_static_correction = 4, quasi_static_force = 10;
+
+/// Contact force over rho c^2 R from which on it is the measure of unbalanced ones.
+constexpr double least_force = 1e-3;
+
+/// df . df and df . f of each lane, df = f - f_before.
+std::array<Wide, 2> change_of(const WideVectors& f, const WideVectors& f_before) {
+  Wide squares = 0.0, products = 0.0;
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    const Vec<2, Wide> df = f[i] - f_before[i];
+    squares += dot(df, df);
+    products += dot(df, f[i]);
+  }
+  return {squares, products};
+}
+
+/// The gamma for which |f - gamma df| is least, lane by lane.
+Wide secant(const WideVectors& f, const WideVectors& f_before) {
+  const auto [squares, products] = change_of(f, f_before);
+  Wide gamma = 0.0;
+  for (int lane = 0; lane < Wide::size; ++lane)
+    if (squares[lane] > 0) gamma.set(lane, std::clamp(products[lane] / squares[lane], -furthest, 1.0));
+  return gamma;
+}
+
+}  // namespace
+
+/// Solves A f = r + H p/dt and moves x by f and what the iterations before add to it.
+ImplicitDynamics::Imbalance ImplicitDynamics::correct(bool same_matrix) {
+  const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, outline_.dt);
+  parallel_for(batches(), [&](int b) {
+    const GrainBatch& batch = grains.batches[b];
+    WideVectors& f = force_[b];
+    f.assign(f.size(), {});
+    grains.scatter_outline(force, batch, f);
+    kept_[b].assign(f.begin() + batch.topology->grid.outline_begin, f.end());
+    matrix_[b].finish_solve(numbers(half_solved_[b]), numbers(kept_[b]), numbers(f));
+    hold_correction(b);
+  });
+  const double correction = largest_correction_of_grains() / mean_radius_;
+  if (!quasi_static(outline_.dt)) {
+    follow_secant(same_matrix && correction >= options.tolerance);
+    return {.correction = correction, .residual = correction};
+  }
+  const double residual =
+      std::max(correction / quasi_static_correction, unbalanced_force(force) / quasi_static_force);
+  follow_momentum(same_matrix, residual >= options.tolerance);
+  return {.correction = correction, .residual = residual};
+}
+
+/// Largest |f| of a node [m]; remembers its grain.
+double ImplicitDynamics::largest_correction_of_grains() {
+  std::vector<std::pair<double, int>> largest(batches());  // |f|^2 and the grain where it is
+  parallel_for(batches(), [&](int b) {
+    const GrainBatch& batch = grains.batches[b];
+    Wide most = 0.0;
+    for (const Vec<2, Wide>& of_node : force_[b]) {
+      const Wide square = dot(of_node, of_node);
+      most = select(square <= most, most, square);  // NaN in one node is NaN in all
+    }
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+      if (!(most[lane] <= largest[b].first)) largest[b] = {most[lane], batch.grain[lane]};
+  });
+  double most = 0;
+  for (const auto& [square, grain] : largest)
+    if (!(square <= most)) most = square, failed_grain_ = grain;
+  return std::sqrt(most);
+}
+
+/// What A has more than the tangent, (M (1/t^2 - 1/dt^2) + c p/l) f, summed over a grain: the force that is
+/// not balanced yet, in units of the mean contact force of a grain or of `least_force`, whichever is more.
+/// The largest of all grains.
+double ImplicitDynamics::unbalanced_force(std::span<const Vec<2>> contact_force) const {
+  const double t = step_of_matrix(outline_.dt), dt = outline_.dt;
+  const Wide rate = 1 / (t * t) - 1 / (dt * dt);
+  std::vector<double> largest(batches());
+  parallel_for(batches(), [&](int b) {
+    const GrainBatch& batch = grains.batches[b];
+    WideVectors extra(force_[b].size());
+    grains.scatter_outline(proximal_, batch, extra);
+    Vec<2, Wide> sum{};
+    for (int i = 0; i < batch.topology->grid.nodes(); ++i)
+      sum += (rate * grains.node_mass(batch, i) + extra[i][0]) * force_[b][i];
+    const Wide square = dot(sum, sum);
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+      if (!(square[lane] <= largest[b])) largest[b] = square[lane];
+  });
+  double scale = 0;
+  for (const Vec<2>& f : contact_force) scale += norm(f) / grains.size();
+  const double wave_speed = smallest_radius_ / wave_time_;
+  const double stiffness = grains.density * wave_speed * wave_speed;
+  return std::sqrt(std::ranges::max(largest)) / std::max(scale, least_force * stiffness * mean_radius_);
+}
+
+/// For each grain by itself and dx its last move:
+///   x += f - gamma (dx + df),
+/// Anderson's method with one step back: A is stiffer than the tangent by the proximal term, so that f alone
+/// goes the same share of the way in every iteration. The last iteration goes by f, as does the first one of
+/// a matrix.
+void ImplicitDynamics::follow_secant(bool accelerated) {
+  parallel_for(batches(), [&](int b) {
+    const WideVectors& f = force_[b];
+    correction_[b].resize(f.size());
+    moved_[b].resize(f.size());
+    const Wide gamma = accelerated ? secant(f, correction_[b]) : 0.0;
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      moved_[b][i] = accelerated ? f[i] - gamma * (moved_[b][i] + f[i] - correction_[b][i]) : f[i];
+      grains.batches[b].position[i] += moved_[b][i];
+    }
+    correction_[b] = f;
+  });
+}
+
+/// Nesterov's momentum, for each grain by itself, and from anew where it points against f or A is new:
+///   y_k+1 = x_k+1 + (t_k - 1)/t_k+1 (x_k+1 - x_k),  x_k+1 = y_k + f(y_k),  t_k+1 = (1 + sqrt(1 + 4
+///   t_k^2))/2.
+/// Unlike a secant it also speeds up modes that grow, in which grains leave an unstable place.
+/// The last iteration goes by f.
+void ImplicitDynamics::follow_momentum(bool same_matrix, bool accelerated) {
+  parallel_for(batches(), [&](int b) {
+    const WideVectors& f = force_[b];
+    WideVectors& ahead = moved_[b];  // y_k - x_k
+    if (!same_matrix) {
+      ahead.assign(f.size(), {});
+      pace_[b] = 1.0;
+    }
+    Wide along = 0.0, kept = 0.0, beta = 0.0;
+    for (std::size_t i = 0; i < f.size(); ++i) along += dot(f[i], ahead[i]);
+    for (int lane = 0; lane < Wide::size; ++lane) {
+      kept.set(lane, along[lane] < 0 ? 0.0 : 1.0);
+      const double t = along[lane] < 0 ? 1.0 : pace_[b][lane];
+      pace_[b].set(lane, 0.5 * (1 + std::sqrt(1 + 4 * t * t)));
+      beta.set(lane, accelerated ? (t - 1) / pace_[b][lane] : 0.0);
+    }
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      ahead[i] = beta * (f[i] + kept * ahead[i]);
+      grains.batches[b].position[i] += f[i] + ahead[i];
+    }
+  });
+}
+
+}  // namespace softgrain

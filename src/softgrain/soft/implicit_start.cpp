@@ -1,0 +1,96 @@
+#include <cmath>
+
+#include "softgrain/core/parallel.hpp"
+#include "softgrain/soft/implicit_step.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Share of a step, in which inertia counts, at which pairs take their normals: half-way contact would give
+/// no energy at all, but packings then rattle and take twice the time (docs/decisions/0026).
+constexpr double normals_of_fast_steps = 0.65;
+
+}  // namespace
+
+/// x at which Newton's method starts: x_n + dt v_n (+ dt^2 g in a quasi-static step) for grains in flight,
+/// x_n for others, whose velocity says how far they fell into their last places, not where they go.
+void ImplicitDynamics::start(double dt) {
+  grains.gather_outline(outline_.start);
+  walls_start_ = walls;
+  damping_ = {options.damping, dt, walls};
+  contacts_start_ = contacts;
+  impulse_start_ = impulse;
+  set_flying(dt);
+  if (impulse_time > 0)
+    for (Vec<2>& p : impulse) p *= dt / impulse_time;  // the same force
+  const Vec<2, Wide> fall{dt * dt * options.gravity[0], dt * dt * options.gravity[1]};
+  parallel_for(batches(), [&](int b) {
+    GrainBatch& batch = grains.batches[b];
+    start_[b] = batch.position;
+    velocity_start_[b] = batch.velocity;
+    for (std::size_t i = 0; i < batch.position.size(); ++i) {
+      batch.position[i] += flying_[b] * Wide(dt) * flight_velocity(b, i);
+      if (quasi_static(dt)) batch.position[i] += flying_[b] * fall;
+    }
+  });
+  outline_.dt = dt;
+  outline_.normals_at = quasi_static(dt) ? 1 : normals_of_fast_steps;
+  if (impulse_time <= 0) find_first_contacts();
+  hold_spins(dt);
+  for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
+  outline_.walls = walls;
+}
+
+/// No step has found contacts yet, and hold_spins asks who is near whom.
+void ImplicitDynamics::find_first_contacts() {
+  outline_.position = outline_.start;
+  outline_.walls = walls;
+  contacts = neighbours_.detect(grains, outline_);
+  impulse.assign(contacts.size(), {});
+}
+
+/// Grains that carry contacts fly no more.
+void ImplicitDynamics::hold_touching() {
+  std::vector<bool> touching(grains.size());
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (!(impulse[c][0] > 0)) continue;
+    touching[grains.grain_of_vertex(contacts[c].vertex)] = true;
+    if (contacts[c].wall < 0) touching[grains.grain_of_vertex(contacts[c].master[0])] = true;
+  }
+  for (int b = 0; b < batches(); ++b)
+    for (int lane = 0; lane < Wide::size && grains.batches[b].grain[lane] >= 0; ++lane)
+      if (touching[grains.batches[b].grain[lane]]) flying_[b].set(lane, 0);
+}
+
+/// All grains (lanes without one stay where they are), but in a step whose inertia A does not have those that
+/// carry contacts or would fly further than is trusted.
+void ImplicitDynamics::set_flying(double dt) {
+  flying_.assign(grains.batches.size(), 1.0);
+  for (int b = 0; b < batches(); ++b)
+    for (int lane = 0; lane < Wide::size; ++lane)
+      if (grains.batches[b].grain[lane] < 0) flying_[b].set(lane, 0);
+  if (step_of_matrix(dt) == dt) return;
+  hold_touching();
+  for (int b = 0; b < batches(); ++b) {
+    const GrainBatch& batch = grains.batches[b];
+    Wide fastest = 0.0;
+    for (const Vec<2, Wide>& v : batch.velocity) {
+      const Wide square = dot(v, v);
+      fastest = select(square <= fastest, fastest, square);
+    }
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+      if (!(dt * std::sqrt(fastest[lane]) < largest_correction * mean_radius_)) flying_[b].set(lane, 0);
+  }
+}
+
+void ImplicitDynamics::take_back() {
+  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
+    grains.batches[b].position = start_[b];
+    grains.batches[b].velocity = velocity_start_[b];
+  }
+  walls = walls_start_;
+  contacts = contacts_start_;
+  impulse = impulse_start_;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,254 @@
+#include "softgrain/soft/implicit_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "softgrain/contact/nlgs.hpp"
+#include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
+#include "softgrain/soft/equilibrium.hpp"
+#include "softgrain/soft/stable_step.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Iterations after which the tangent is made anew.
+constexpr int refactor_every = 8;
+
+/// Tolerance of NLGS over that of Newton's method: looser, and Newton needs more iterations; tighter, and
+/// NLGS sweeps in vain (docs/decisions/0013).
+constexpr double contact_share = 0.25;
+
+/// A vertex may be this many tolerances deep: the worst contact that NLGS allows, and Newton's last move.
+constexpr double deepest = 10;
+
+/// Proximal term of a quasi-static step over that of others (docs/decisions/0023).
+constexpr double quasi_static_proximal = 2;
+
+/// Sub-steps shorter than this share of the explicit step are not tried.
+constexpr double shortest_step = 1.0 / 64;
+
+}  // namespace
+
+ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
+                                   const ImplicitOptions& implicit_options)
+    : grains(std::move(soft_grains)), walls(std::move(plates)), options(implicit_options) {
+  require(grains.size() > 0, "there is no grain");
+  require(options.friction >= 0 && options.wall_friction >= 0, "friction must be >= 0, got {} and {}",
+          options.friction, options.wall_friction);
+  smallest_radius_ = grains.radius(0);
+  for (int g = 0; g < grains.size(); ++g) {
+    mean_radius_ += grains.radius(g) / grains.size();
+    smallest_radius_ = std::min(smallest_radius_, grains.radius(g));
+  }
+  explicit_step_ = stable_time_step(grains, 1);
+  const double wave_speed =
+      std::visit([&](const auto& law) { return law.wave_speed(grains.density); }, grains.law);
+  wave_time_ = smallest_radius_ / wave_speed;
+  for (const GrainBatch& batch : grains.batches) {
+    matrix_.emplace_back(batch.topology->pattern);
+    const std::size_t width = 2 * batch.topology->grid.outline_nodes();
+    compliance_.emplace_back(Wide::size * width * width);
+  }
+  for (auto* vectors : {&start_, &velocity_start_, &half_solved_, &force_, &kept_, &correction_, &moved_})
+    vectors->resize(grains.batches.size());
+  wall_impulse_.resize(walls.size());
+  pace_.resize(grains.batches.size());
+}
+
+SoftStepReport ImplicitDynamics::step(double dt) {
+  SoftStepReport report;
+  wall_impulse_.assign(walls.size(), {});
+  if (sub_step <= 0) sub_step = dt;
+  const double shortest = shortest_step * std::min(dt, explicit_step_);
+  for (double done = 0; done < dt * (1 - 1e-9);) {
+    const double part = std::min(sub_step, dt - done);
+    const Failure failure = try_step(part, report);
+    if (failure == Failure::none) {
+      done += part;
+      if (part == sub_step) sub_step *= 2;
+      continue;
+    }
+    take_back();
+    ++report.rejected;
+    sub_step = part / 4;
+    if (sub_step < shortest) give_up(failure, part);
+  }
+  report.converged = true;
+  return report;
+}
+
+void ImplicitDynamics::give_up(Failure failure, double dt) const {
+  const char* cause = failure == Failure::inverted_point      ? "a material point is turned inside out"
+                      : failure == Failure::indefinite_matrix ? "the stiffness is indefinite"
+                      : failure == Failure::not_finite        ? "a correction is not finite"
+                      : failure == Failure::too_far           ? "a correction is larger than half a grain"
+                      : failure == Failure::too_deep          ? "a contact stays too deep"
+                                                              : "Newton's method does not converge";
+  throw NumericalError(fmt::format(
+      "no step of soft grains down to dt = {:.3g} s, {:.3g} of the explicit one: {} in grain {}; use a finer "
+      "grid or a larger tolerance, or load less far",
+      dt, dt / explicit_step_, cause, failed_grain_));
+}
+
+ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& report) {
+  start(dt);
+  const double proximal = options.proximal * (quasi_static(dt) ? quasi_static_proximal : 1);
+  Failure failure = factor(dt, proximal, report);
+  if (failure == Failure::indefinite_matrix) failure = factor(dt, 4 * proximal, report);
+  Imbalance left;
+  for (int iteration = 1; failure == Failure::none; ++iteration) {
+    if ((failure = residual(dt)) != Failure::none) break;
+    const bool contacts_solved = solve_contacts(dt, report);
+    left = correct(iteration > 1 && (iteration - 1) % refactor_every != 0);
+    ++report.iterations;
+    if (!(left.correction < largest_correction))
+      return std::isfinite(left.correction) ? Failure::too_far : Failure::not_finite;
+    if (contacts_solved && left.residual < options.tolerance) {
+      if (find_depth() <= deepest * options.tolerance) break;
+      failure = iteration == options.max_iterations ? Failure::too_deep : failure;
+    } else if (iteration == options.max_iterations) {
+      failure = Failure::no_convergence;
+    }
+    if (failure == Failure::none && iteration % refactor_every == 0) failure = factor(dt, proximal, report);
+  }
+  if (failure == Failure::none) failure = finish(dt, report);
+  if (failure == Failure::none) report.residual = std::max(report.residual, left.residual);
+  return failure;
+}
+
+/// A = M/t^2 + K(x) + c p/l on the outline; its Cholesky factor and the compliance of the outlines.
+ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, SoftStepReport& report) {
+  proximal_.assign(grains.outline_size(), {});
+  if (!contacts.empty()) {
+    const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
+    for (int v = 0; v < grains.outline_size(); ++v) {
+      const int g = grains.grain_of_vertex(v);
+      const double length =
+          2 * std::numbers::pi * grains.radius(g) / (grains.outline_end(g) - grains.outline_begin(g));
+      proximal_[v] = (proximal * norm(force[v]) / length) * Vec<2>{1, 1};
+    }
+  }
+  report.factorisations += batches();
+  const double t = step_of_matrix(dt);
+  const Precision precision =
+      t <= options.single_precision_steps * explicit_step_ ? Precision::single : Precision::full;
+  std::vector<int> failed(batches(), -1);
+  parallel_for(batches(), [&](int b) {
+    const GrainBatch& batch = grains.batches[b];
+    BatchedCholesky& A = matrix_[b];
+    A.clear(precision);
+    add_stiffness(grains, batch, A);
+    WideVectors diagonal(batch.position.size());
+    grains.scatter_outline(proximal_, batch, diagonal);
+    for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
+      const Wide entry = grains.node_mass(batch, i) * Wide(1 / (t * t)) + diagonal[i][0];
+      A.add(i, i, {entry, 0.0, 0.0, entry});
+    }
+    failed[b] = batch.grain_in(A.factor());
+    if (failed[b] >= 0) return;
+    A.kept_inverse(compliance_[b]);
+    hold_in_compliance(b);
+  });
+  return none_failed(failed) ? Failure::none : Failure::indefinite_matrix;
+}
+
+/// r = f_ext - f_int - M (x - x_n - dt v_n)/dt^2, and A^-1 r on the outlines.
+ImplicitDynamics::Failure ImplicitDynamics::residual(double dt) {
+  outline_increment_.assign(grains.outline_size(), {});
+  std::vector<int> failed(batches(), -1);
+  parallel_for(batches(), [&](int b) {
+    const GrainBatch& batch = grains.batches[b];
+    failed[b] = batch.grain_in(internal_force(grains, batch, force_[b]));
+    if (failed[b] >= 0) return;
+    WideVectors& r = force_[b];
+    for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
+      const Wide m = grains.node_mass(batch, i), rate = m * Wide(1 / (dt * dt));
+      const Vec<2, Wide> flight = flight_velocity(b, i);
+      for (int d = 0; d < 2; ++d) {
+        const Wide inertia = rate * (batch.position[i][d] - start_[b][i][d] - Wide(dt) * flight[d]);
+        r[i][d] = m * Wide(options.gravity[d]) - r[i][d] - inertia;
+      }
+    }
+    half_solved_[b].resize(r.size());
+    kept_[b].resize(batch.topology->grid.outline_nodes());
+    matrix_[b].begin_solve(numbers(r), numbers(half_solved_[b]), numbers(kept_[b]));
+    hold_increment(b);
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+      for (int v = 0; v < batch.topology->grid.outline_nodes(); ++v)
+        outline_increment_[grains.outline_begin(batch.grain[lane]) + v] = {kept_[b][v][0][lane],
+                                                                           kept_[b][v][1][lane]};
+  });
+  return none_failed(failed) ? Failure::none : Failure::inverted_point;
+}
+
+/// Remembers the first grain >= 0 as the one that failed.
+bool ImplicitDynamics::none_failed(std::span<const int> grain_of_batch) {
+  failed_grain_ = -1;
+  for (const int grain : grain_of_batch)
+    if (failed_grain_ < 0) failed_grain_ = grain;
+  return failed_grain_ < 0;
+}
+
+std::vector<double> ImplicitDynamics::friction_of_contacts() const {
+  std::vector<double> friction;
+  for (const OutlineContact& c : contacts)
+    friction.push_back(c.wall >= 0 ? options.wall_friction : options.friction);
+  return friction;
+}
+
+/// Contacts at the present positions, and their impulses by NLGS with warm start. True if it converged.
+bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
+  grains.gather_outline(outline_.position);
+  std::vector<OutlineContact> found = neighbours_.detect(grains, outline_);
+  impulse = carried_impulses(grains, contacts, impulse, found);
+  contacts = std::move(found);
+  ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt, scratch_);
+  system.apply_impulses(impulse);
+  SolverOptions solver = options.solver;
+  solver.velocity_scale = mean_radius_ / dt;
+  solver.tolerance = contact_share * options.tolerance;
+  const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction_of_contacts(), solver);
+  report.sweeps += solved.sweeps;
+  return solved.converged;
+}
+
+/// Of the deepest vertex at the present positions, over the mean radius; keeps the contacts found.
+double ImplicitDynamics::find_depth() {
+  grains.gather_outline(outline_.position);
+  found_ = neighbours_.detect(grains, outline_);
+  double depth = 0;
+  for (const OutlineContact& contact : found_) depth = std::max(depth, -contact.gap / mean_radius_);
+  return depth;
+}
+
+/// v = (x - x_n)/dt; the walls' impulses; the work done; the contacts as they are at the end.
+ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& report) {
+  std::vector<int> failed(batches(), -1);
+  parallel_for(batches(), [&](int b) {
+    GrainBatch& batch = grains.batches[b];
+    failed[b] = batch.grain_in(internal_force(grains, batch, force_[b]));
+    for (std::size_t i = 0; i < batch.position.size(); ++i)
+      batch.velocity[i] = Wide(1 / dt) * (batch.position[i] - start_[b][i]);
+  });
+  if (!none_failed(failed)) return Failure::inverted_point;
+  if (caught) catch_problem(dt);
+  if (step_of_matrix(dt) < dt) hold_touching();
+  balance_momentum(dt);
+  add_work();
+  impulse = carried_impulses(grains, contacts, impulse, found_);
+  contacts = std::move(found_);
+  impulse_time = dt;
+  report.contacts = 0;
+  double depths = 0;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    report.contacts += impulse[c][0] > 0;
+    if (impulse[c][0] > 0) depths += std::max(0.0, -contacts[c].gap);
+    report.penetration_max = std::max(report.penetration_max, -contacts[c].gap / smallest_radius_);
+  }
+  report.penetration_mean = report.contacts > 0 ? depths / report.contacts / smallest_radius_ : 0;
+  return Failure::none;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,168 @@
+#pragma once
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "softgrain/contact/contact_problem.hpp"
+#include "softgrain/contact/solver_options.hpp"
+#include "softgrain/geometry/wall_motion.hpp"
+#include "softgrain/model/soft_step_report.hpp"
+#include "softgrain/model/work_budget.hpp"
+#include "softgrain/soft/elastic_contacts.hpp"
+#include "softgrain/soft/outline_contacts.hpp"
+#include "softgrain/soft/soft_grains.hpp"
+
+namespace softgrain {
+
+/// x and y of each vector, one after the other.
+inline std::span<Wide> numbers(WideVectors& vectors) { return {&vectors[0][0], 2 * vectors.size()}; }
+
+struct ImplicitOptions {
+  double tolerance = 1e-4;  ///< largest correction of Newton's last iteration, over the mean grain radius
+  int max_iterations = 40;  ///< of Newton's method
+  double proximal =
+      0.5;  ///< c of the term c p/l on the outline's diagonal of the tangent (p/l contact pressure)
+  /// In times of a wave through the smallest grain, R/c (docs/decisions/0023): a (sub-)step longer than this
+  /// is quasi-static, and A has the inertia of a step of at most that
+  double quasi_static_from = 6, inertia_of_at_most = 20;
+  /// A is factored in single precision for steps up to this many explicit ones (h/c, stable_time_step); its
+  /// condition is about 4 times the square of their ratio (docs/decisions/0019). 0: never
+  double single_precision_steps = 60;
+  SolverOptions solver{.max_sweeps = 500};  ///< NLGS, to a quarter of Newton's tolerance
+  double friction = 0;                      ///< mu between grains
+  double wall_friction = 0;                 ///< mu against walls
+  Vec<2> gravity{};                         ///< [m/s^2]
+  double damping = 0;                       ///< zeta [1/s], see MassDamping
+};
+
+/// Soft grains between walls by backward Euler with position-level contact (docs/theory.md, implicit MPM):
+///   M (x - x_n - dt v_n)/dt^2 + f_int(x) = f_ext + H p/dt,   v = (x - x_n)/dt,
+/// (f_ext: gravity and damping, which is that of v_n),
+///   0 <= g(x) _|_ p_n >= 0,  |p_t| <= mu p_n.
+/// Newton's method detects contacts anew in every iteration; A = M/dt^2 + K + proximal term is factored once
+/// a step, and again where Newton's method needs many iterations; each grain follows the secant of its last
+/// two corrections (docs/decisions/0021).
+///
+/// A quasi-static step, dt > 6 R/c, starts Newton's method at x_n where grains touch, and solves the same
+/// equations with A = M/t^2 + K + proximal term, t = min(dt, 20 R/c): a grain's rigid motions cost something
+/// in A, though nothing in the residual, so that NLGS works as well as in a step of t. That the forces
+/// balance is asked for apart (docs/decisions/0023).
+class ImplicitDynamics {
+ public:
+  ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
+                   const ImplicitOptions& implicit_options);
+
+  /// One step of dt; walls move by dt times their velocity. A sub-step in which Newton's method or NLGS does
+  /// not converge, that leaves a contact too deep, inverts a point or makes A indefinite is taken back and
+  /// tried again with a quarter of its length; sub-steps grow again while they succeed, also from one step to
+  /// the next. Raises NumericalError, naming the grain, for sub-steps far below the explicit one.
+  SoftStepReport step(double dt);
+
+  /// Impulse of the grains on a wall in the last step [N s/m].
+  const Vec<2>& wall_impulse(int wall) const { return wall_impulse_[wall]; }
+  double mean_radius() const { return mean_radius_; }
+
+  SoftGrains grains;
+  std::vector<Wall<2>> walls;
+  ImplicitOptions options;
+  std::vector<OutlineContact> contacts;  ///< at the end of the last step
+  std::vector<Vec<2>> impulse;           ///< theirs (p_n, p_t) [N s/m]
+  double impulse_time = 0;               ///< the (sub-)step over which they acted [s]
+  double sub_step = 0;                   ///< the longest to try next [s]; 0: the whole step
+  WorkBudget work;                       ///< since the start
+  /// Unless empty: becomes the last contact problem of every step.
+  std::optional<SolvedContactProblem> caught;
+
+ private:
+  enum class Failure {
+    none,
+    inverted_point,
+    indefinite_matrix,
+    not_finite,
+    too_far,
+    no_convergence,
+    too_deep
+  };
+
+  /// A correction larger than this, over the mean radius, is not trusted.
+  static constexpr double largest_correction = 0.5;
+
+  /// Largest correction of an iteration, over the mean radius, and what is compared with the tolerance: the
+  /// same, or, of a quasi-static step, a quarter of it or a tenth of the unbalanced force of a grain over its
+  /// contact force, whichever is more.
+  struct Imbalance {
+    double correction = 0, residual = 0;
+  };
+
+  /// Of a batch, some of whose grains keep their spin: a couple -c q on the grains in `lanes`, see
+  /// hold_spins.
+  struct HeldSpin {
+    Wide lanes = 0.0;                 ///< 1 or 0; nothing is held while `direction` is empty
+    WideVectors direction, response;  ///< q, and u = A^-1 q
+    Wide inverse = 0.0;               ///< 1/(q . u), or 0
+    Wide wanted = 0.0, left = 0.0;    ///< q . (x - x_n) at the end; and what lacks of it
+    Wide couple = 0.0;                ///< c
+  };
+
+  bool quasi_static(double dt) const { return dt > options.quasi_static_from * wave_time_; }
+  /// The step whose inertia A has [s].
+  double step_of_matrix(double dt) const { return std::min(dt, options.inertia_of_at_most * wave_time_); }
+  Failure try_step(double dt, SoftStepReport& report);
+  void start(double dt);
+  void set_flying(double dt);
+  void hold_touching();
+  void find_first_contacts();
+  void hold_spins(double dt);
+  void hold_in_compliance(std::size_t b);
+  void hold_increment(std::size_t b);
+  void hold_correction(std::size_t b);
+  Failure factor(double dt, double proximal, SoftStepReport& report);
+  Failure residual(double dt);
+  bool solve_contacts(double dt, SoftStepReport& report);
+  Imbalance correct(bool same_matrix);
+  double largest_correction_of_grains();
+  double unbalanced_force(std::span<const Vec<2>> contact_force) const;
+  void follow_secant(bool accelerated);
+  void follow_momentum(bool same_matrix, bool accelerated);
+  double find_depth();
+  void catch_problem(double dt);
+  Failure finish(double dt, SoftStepReport& report);
+  void balance_momentum(double dt);
+  /// v_n and what damping changes of it, of a node of a batch.
+  Vec<2, Wide> flight_velocity(std::size_t b, std::size_t i) const {
+    const Vec<2, Wide>& v = velocity_start_[b][i];
+    return options.damping > 0 ? v + damping_.velocity_change(start_[b][i], v) : v;
+  }
+  void add_work();
+  void take_back();
+  [[noreturn]] void give_up(Failure failure, double dt) const;
+  std::vector<double> friction_of_contacts() const;
+
+  double mean_radius_ = 0, smallest_radius_ = 0;
+  double explicit_step_ = 0;  // h/c [s]
+  double wave_time_ = 0;      // R/c of the smallest grain [s]
+  OutlineNeighbours neighbours_;
+  std::vector<BatchedCholesky> matrix_;
+  std::vector<OutlineCompliance> compliance_;
+  ElasticScratch scratch_;
+  int batches() const { return static_cast<int>(grains.batches.size()); }
+  bool none_failed(std::span<const int> grain_of_batch);
+
+  std::vector<WideVectors> start_, velocity_start_, half_solved_, force_, kept_;  // per batch
+  std::vector<WideVectors> correction_, moved_;  // of the iteration before: f, and what became of x
+  std::vector<Wide> flying_;                     // 1 for grains whose start is x_n + dt v_n, else 0
+  std::vector<Wide> pace_;                       // t_k of follow_momentum
+  std::vector<Vec<2>> proximal_;                 // (outline vertices) c p/l on both components [N/m^2]
+  std::vector<HeldSpin> held_;                   // per batch
+  std::vector<Vec<2>> outline_increment_;
+  OutlineState outline_;
+  std::vector<Wall<2>> walls_start_;
+  std::vector<OutlineContact> contacts_start_, found_;
+  std::vector<Vec<2>> impulse_start_;
+  std::vector<Vec<2>> wall_impulse_;
+  int failed_grain_ = -1;
+  MassDamping damping_;
+};
+
+}  // namespace softgrain

@@ -1,0 +1,72 @@
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "softgrain/contact/contact_system.hpp"
+#include "softgrain/contact/residual.hpp"
+#include "softgrain/soft/contact_strips.hpp"
+#include "softgrain/soft/outline_contacts.hpp"
+
+namespace softgrain {
+
+/// Contacts of explicit grains as a ContactSystem: the outline's lumped masses answer at once,
+///   u = v_slave - sum_k w_k v_k,   W = (1/m_slave + sum_k w_k^2/m_k) 1,
+/// or at a wall sum_k w_k v_k and sum_k w_k^2/m_k,
+/// with u_n changed to the gap at the end of the step over dt, (g + dt n . (u - u_found))/dt, where u_found
+/// had brought the outlines to where the contacts were found.
+class LumpedContacts {
+ public:
+  struct Scratch;
+  /// velocity: (outline vertices) [m/s], u_found when constructed, then changed by the caller and by
+  /// impulses; inverse_mass: (outline vertices) [m/kg]. Keeps references to the velocities and the scratch.
+  LumpedContacts(std::span<const OutlineContact> contacts, const OutlineState& outline,
+                 std::span<Vec<2>> velocity, std::span<const double> inverse_mass, Scratch& scratch);
+
+  int size() const { return static_cast<int>(rows_.size()); }
+  Mat<2> delassus_block(int contact) const {
+    const double W = row(contact).delassus;
+    return Mat<2>::diagonal({W, W});
+  }
+  Vec<2> relative_velocity(int contact) const;
+  void apply_impulse(int contact, const Vec<2>& dp);
+  /// The impulses of all contacts.
+  void apply_impulses(std::span<const Vec<2>> impulse);
+  /// One pass of Gauss-Seidel, first over the even strips, then over the odd ones. As W is a multiple of 1, a
+  /// contact is solved by
+  ///   p_n = max(0, p_n - u_n/W),  p_t = p_t - u_t/W, cut to |p_t| <= mu p_n.
+  Violation sweep(std::span<Vec<2>> impulse, std::span<const double> friction, const SolverOptions& options);
+
+ private:
+  // per contact and sweep: reads 160 B in the order of memory, and five velocities
+  struct Row {
+    int contact = 0;
+    int vertices = 0;                  // 5; at a wall 3, or 1
+    std::array<int, 5> vertex{};       // the slave, then the master's; or those of a place at a wall
+    std::array<double, 5> weight{};    // 1, -w_k; or w_k
+    std::array<double, 5> mobility{};  // weight/m: velocity by a unit impulse
+    Vec<2> normal, offset;             // u = (n, t) . sum weight v + offset
+    double delassus = 0, inverse_delassus = 0;
+  };
+  const Row& row(int contact) const { return rows_[strips_.place[contact]]; }
+  Row row_of(const OutlineContact& contact, const OutlineState& outline,
+             std::span<const double> inverse_mass) const;
+  Vec<2> velocity_of(const Row& row) const;
+  Vec<2> relative_velocity(const Row& row) const;
+  void apply_impulse(const Row& row, const Vec<2>& dp);
+  void solve(const Row& row, Vec<2>& p, double friction, const SolverOptions& options, Violation& violation);
+  template <class Work>
+  void for_each_strip(const Work& work) const;
+
+  std::vector<Row>& rows_;  // strip by strip
+  ContactStrips& strips_;
+  std::span<Vec<2>> velocity_;
+};
+
+/// Memory kept from step to step.
+struct LumpedContacts::Scratch {
+  std::vector<Row> rows;
+  ContactStrips strips;
+};
+
+}  // namespace softgrain

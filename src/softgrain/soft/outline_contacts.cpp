@@ -1,0 +1,281 @@
+#include "softgrain/soft/outline_contacts.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "softgrain/core/parallel.hpp"
+#include "softgrain/geometry/cell_grid.hpp"
+#include "softgrain/soft/span_curve.hpp"
+
+namespace softgrain {
+namespace {
+
+// In units of the mean segment: candidates hold all contacts up to this gap until a vertex moved half the
+// skin.
+constexpr double largest_margin = 0.5;
+constexpr double skin_share = 0.5;
+
+/// Vertices that a thread takes at once.
+constexpr int part_size = 128;
+
+/// The vertices of one outline, in a ring.
+struct Ring {
+  int begin, end;
+  int next(int vertex) const { return vertex + 1 < end ? vertex + 1 : begin; }
+  int previous(int vertex) const { return vertex > begin ? vertex - 1 : end - 1; }
+};
+Ring ring_of(const SoftGrains& grains, int vertex) {
+  const int grain = grains.grain_of_vertex(vertex);
+  return {grains.outline_begin(grain), grains.outline_end(grain)};
+}
+
+/// Mean distance of a grain's outline vertices when it was round [m].
+double segment_length(const SoftGrains& grains, int grain) {
+  return 2 * std::numbers::pi * grains.radius(grain) /
+         (grains.outline_end(grain) - grains.outline_begin(grain));
+}
+
+/// The vertex of each nearby master grain that is closest to a slave vertex.
+struct Nearest {
+  int grain, vertex;
+  double distance_squared;
+};
+
+/// The vertex of a master's outline where the segment starts that x faces, next to the vertex nearest to x.
+int facing_segment(const Ring& ring, std::span<const Vec<2>> position, const Vec<2>& x, int nearest) {
+  const int before = ring.previous(nearest);
+  const Vec<2> tangent = position[ring.next(nearest)] - position[before];
+  return dot(x - position[nearest], tangent) < 0 ? before : nearest;
+}
+
+/// True if x is surely more than `margin` outside the curve from the vertex `start` to the next. Over its
+/// chord the curve bulges by less than a quarter of the steeper of its slopes at the ends (Bezier's control
+/// points); an eighth more than the margin covers what the normal at an end is inclined.
+bool surely_outside(std::span<const Vec<2>> position, const Ring& ring, int start, const Vec<2>& x,
+                    double margin) {
+  const int end = ring.next(start);
+  const Vec<2> chord = position[end] - position[start], inward = perpendicular(chord);
+  const double slope = std::max(-dot(position[end] - position[ring.previous(start)], inward),
+                                dot(position[ring.next(end)] - position[start], inward)) /
+                       2;  // times |chord|
+  const double beyond = -dot(x - position[start], inward) - std::max(slope, 0.0) / 4;
+  const double least = 1.125 * margin;
+  return beyond > 0 && beyond * beyond > least * least * dot(chord, chord);
+}
+
+/// The place that a slave faces on the curve from the vertex `start` to the next.
+OutlineContact curve_contact(std::span<const Vec<2>> position, const Ring& ring, int slave, int start) {
+  const Vec<2>& x = position[slave];
+  const int end = ring.next(start);
+  OutlineContact contact{.vertex = slave, .master = {ring.previous(start), start, end, ring.next(end)}};
+  const SpanCurve curve(position, contact.master);
+  contact.share = curve.closest_to(x);
+  const Vec<2> t = curve.tangent(contact.share);
+  contact.normal = (-1 / norm(t)) * perpendicular(t);  // outward of a counter-clockwise outline
+  contact.gap = dot(x - curve.place(contact.share), contact.normal);
+  return contact;
+}
+
+/// The vertex v and its arc against a wall. With s = n . (x_next - x_previous)/2 and theta the arc's
+/// inclination, sin theta = s/l, the lowest place of the arc is f(s) = r (1 - cos theta) below the vertex; g
+/// = h - f is concave, so that outlines clear of a wall are a convex set.
+OutlineContact wall_contact(const OutlineState& state, int wall_index, const std::array<int, 4>& span,
+                            double height, const OutlineArc& arc, double size) {
+  const Wall<2>& wall = state.walls[wall_index];
+  OutlineContact contact{
+      .vertex = span[1], .wall = wall_index, .master = span, .normal = wall.normal, .gap = height};
+  if (arc.end_sine > 0) {
+    const double s = dot(state.position[span[2]] - state.position[span[0]], wall.normal) / 2;
+    const double sine = std::clamp(s / (size * arc.half_chord), -arc.end_sine, arc.end_sine);
+    const double cosine = std::sqrt(1 - sine * sine);
+    contact.share = -arc.radius / arc.half_chord * sine / cosine;  // xi = -f'(s)
+    contact.rise = size * arc.radius * (1 / cosine - 1);           // of f's conjugate
+    contact.gap += contact.share * s + contact.rise;
+  }
+  contact.slip = dot(perpendicular(wall.normal), relative_displacement(contact, state));
+  return contact;
+}
+
+/// The vertex of a master's outline nearest to x, walking downhill from `start`.
+int nearest_vertex(const Ring& ring, std::span<const Vec<2>> position, const Vec<2>& x, int start) {
+  const auto distance_squared = [&](int w) {
+    const Vec<2> d = position[w] - x;
+    return dot(d, d);
+  };
+  int nearest = start;
+  double least = distance_squared(start);
+  for (;;) {
+    const int before = ring.previous(nearest), after = ring.next(nearest);
+    const double d_before = distance_squared(before), d_after = distance_squared(after);
+    if (least <= d_before && least <= d_after) return nearest;
+    nearest = d_before < d_after ? before : after;
+    least = std::min(d_before, d_after);
+  }
+}
+
+/// Where the slave v faces a master at the outlines `position`, near the vertex `nearest`.
+OutlineContact facing_contact(std::span<const Vec<2>> position, const Ring& ring, int v, int nearest) {
+  const Vec<2>& x = position[v];
+  nearest = nearest_vertex(ring, position, x, nearest);
+  return curve_contact(position, ring, v, facing_segment(ring, position, x, nearest));
+}
+
+/// The vertex of each grain within `reach` of vertex v that is nearest to it, sorted by grain.
+void find_near(const SoftGrains& grains, std::span<const Vec<2>> position, const CellGrid<2>& grid,
+               double reach, int v, std::vector<Nearest>& near) {
+  near.clear();
+  grid.for_each_neighbour(v, [&](int w) {
+    const int other = grains.grain_of_vertex(w);
+    if (other == grains.grain_of_vertex(v)) return;
+    const Vec<2> d = position[w] - position[v];
+    const double distance_squared = dot(d, d);
+    if (distance_squared > reach * reach) return;
+    const auto found =
+        std::find_if(near.begin(), near.end(), [&](const Nearest& n) { return n.grain == other; });
+    if (found == near.end())
+      near.push_back({other, w, distance_squared});
+    else if (distance_squared < found->distance_squared)
+      *found = {other, w, distance_squared};
+  });
+  std::sort(near.begin(), near.end(), [](const Nearest& a, const Nearest& b) { return a.grain < b.grain; });
+}
+
+}  // namespace
+
+std::array<double, 4> curve_weights(double xi) {
+  const double a = xi * xi, b = a * xi;
+  return {-xi / 2 + a - b / 2, 1 - 2.5 * a + 1.5 * b, xi / 2 + 2 * a - 1.5 * b, (b - a) / 2};
+}
+
+bool OutlineNeighbours::moved_far(const OutlineState& state) {
+  if (reference_.size() != state.position.size()) return true;
+  const double allowed = skin_share * segment_ / 2;
+  parallel_for(static_cast<int>(parts_.size()), [&](int k) {
+    double largest = 0;
+    for (int v = parts_[k].begin; v < parts_[k].end; ++v) {
+      const Vec<2> d = state.position[v] - reference_[v];
+      largest = std::max(largest, dot(d, d));
+    }
+    parts_[k].moved_far = largest > allowed * allowed;
+  });
+  return std::ranges::any_of(parts_, &Part::moved_far);
+}
+
+void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineState& state) {
+  reference_ = state.position;
+  parts_.resize((grains.outline_size() + part_size - 1) / part_size);
+  segment_ = 0;
+  for (int g = 0; g < grains.size(); ++g) segment_ += segment_length(grains, g) / grains.size();
+  double longest = 0;
+  for (int v = 0; v < grains.outline_size(); ++v)
+    longest = std::max(longest, norm(state.position[ring_of(grains, v).next(v)] - state.position[v]));
+  const double reach = longest + (largest_margin + skin_share) * segment_;
+  const CellGrid<2> grid(state.position, reach);
+  parallel_for(static_cast<int>(parts_.size()), [&](int k) {
+    Part& part = parts_[k];
+    part.begin = k * part_size;
+    part.end = std::min(part.begin + part_size, grains.outline_size());
+    part.candidates.clear();
+    std::vector<Nearest> near;
+    for (int v = part.begin; v < part.end; ++v) {
+      find_near(grains, state.position, grid, reach, v, near);
+      for (const Nearest& nearest : near) part.candidates.push_back({v, nearest.vertex});
+    }
+  });
+}
+
+void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineState& state, double margin,
+                                      Part& part) const {
+  part.contacts.clear();
+  auto candidate = part.candidates.begin();
+  for (int v = part.begin; v < part.end; ++v) {
+    const Vec<2>& x = state.position[v];
+    for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
+      const double height = dot(x - state.walls[w].point, state.walls[w].normal);
+      if (height > margin + segment_) continue;
+      const Ring ring = ring_of(grains, v);
+      const int grain = grains.grain_of_vertex(v), next = ring.next(v);
+      const OutlineContact contact =
+          wall_contact(state, w, {ring.previous(v), v, next, ring.next(next)}, height,
+                       grains.topology(grain).arc[v - ring.begin], grains.radius(grain));
+      if (contact.gap < margin) part.contacts.push_back(contact);
+    }
+    for (; candidate != part.candidates.end() && candidate->vertex == v; ++candidate) {
+      const Ring ring = ring_of(grains, candidate->nearest);
+      candidate->nearest = nearest_vertex(ring, state.position, x, candidate->nearest);
+      const Vec<2> d = x - state.position[candidate->nearest];
+      if (dot(d, d) > 9 * segment_ * segment_) continue;
+      const int start = facing_segment(ring, state.position, x, candidate->nearest);
+      if (surely_outside(state.position, ring, start, x, margin)) continue;
+      const double gap = curve_contact(state.position, ring, v, start).gap;
+      if (gap >= margin) continue;
+      OutlineContact contact = facing_contact(on_the_way_, ring, v, candidate->nearest);
+      contact.gap = gap;
+      contact.slip = dot(perpendicular(contact.normal), relative_displacement(contact, state));
+      part.contacts.push_back(contact);
+    }
+  }
+}
+
+std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, const OutlineState& state,
+                                                      double margin) {
+  assert(margin <= largest_margin);
+  if (moved_far(state)) find_candidates(grains, state);
+  on_the_way_.resize(state.position.size());
+  parallel_for(static_cast<int>(parts_.size()), [&](int k) {
+    for (int v = parts_[k].begin; v < parts_[k].end; ++v)
+      on_the_way_[v] = state.start[v] + state.normals_at * (state.position[v] - state.start[v]);
+  });
+  parallel_for(static_cast<int>(parts_.size()),
+               [&](int k) { find_contacts(grains, state, margin * segment_, parts_[k]); });
+  std::size_t count = 0;
+  for (const Part& part : parts_) count += part.contacts.size();
+  std::vector<OutlineContact> contacts;
+  contacts.reserve(count);
+  for (const Part& part : parts_) contacts.insert(contacts.end(), part.contacts.begin(), part.contacts.end());
+  return contacts;
+}
+
+Vec<2> relative_displacement(const OutlineContact& contact, const OutlineState& state) {
+  Vec<2> displacement;
+  if (contact.wall >= 0) displacement -= state.dt * state.walls[contact.wall].velocity;
+  contact.for_each_vertex([&](int vertex, double weight) {
+    displacement += weight * (state.position[vertex] - state.start[vertex]);
+  });
+  return displacement;
+}
+
+double gap_now(const OutlineContact& contact, const OutlineState& state) {
+  if (contact.wall >= 0) {
+    Vec<2> apart = -state.walls[contact.wall].point;
+    contact.for_each_vertex([&](int vertex, double weight) { apart += weight * state.position[vertex]; });
+    return dot(apart, contact.normal) + contact.rise;
+  }
+  const Vec<2>& x = state.position[contact.vertex];
+  const SpanCurve curve(state.position, contact.master);
+  const double xi = curve.closest_to(x);
+  const Vec<2> t = curve.tangent(xi);
+  return -dot(x - curve.place(xi), perpendicular(t)) / norm(t);
+}
+
+std::vector<Vec<2>> carried_impulses(const SoftGrains& grains, std::span<const OutlineContact> old,
+                                     std::span<const Vec<2>> old_impulse,
+                                     std::span<const OutlineContact> contacts) {
+  std::vector<Vec<2>> impulse(contacts.size());
+  const auto same = [&](const OutlineContact& a, const OutlineContact& b) {
+    if (a.wall >= 0 || b.wall >= 0) return a.wall == b.wall;
+    return grains.grain_of_vertex(a.master[0]) == grains.grain_of_vertex(b.master[0]);
+  };
+  std::size_t first = 0;  // old contact of the same vertex: both lists are sorted by it
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    while (first < old.size() && old[first].vertex < contacts[c].vertex) ++first;
+    for (std::size_t k = first; k < old.size() && old[k].vertex == contacts[c].vertex; ++k)
+      if (old_impulse[k][0] > 0 && same(old[k], contacts[c])) impulse[c] = old_impulse[k];
+  }
+  return impulse;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,99 @@
+#include "softgrain/soft/soft_grains.hpp"
+
+#include <cmath>
+
+#include "softgrain/core/error.hpp"
+
+namespace softgrain {
+
+SoftGrains::SoftGrains(std::vector<GrainPlacement> grains, AnyLaw material, double mass_density)
+    : law(material), density(mass_density) {
+  require(density > 0, "the density must be > 0, got {} kg/m^3", density);
+  place_.resize(grains.size());
+  outline_begin_.push_back(0);
+  for (int g = 0; g < static_cast<int>(grains.size()); ++g) {
+    const GrainPlacement& placed = grains[g];
+    require(placed.radius > 0, "grain {}: the radius must be > 0, got {} m", g, placed.radius);
+    shapes_.push_back(placed.topology);
+    radius_.push_back(placed.radius);
+    const int vertices = placed.topology->grid.outline_nodes();
+    outline_begin_.push_back(outline_begin_.back() + vertices);
+    grain_of_vertex_.insert(grain_of_vertex_.end(), vertices, g);
+
+    // the next free lane of a batch of this shape
+    int b = static_cast<int>(batches.size()) - 1;
+    while (b >= 0 && !(batches[b].topology == placed.topology.get() && batches[b].grain.back() < 0)) --b;
+    if (b < 0) {
+      b = static_cast<int>(batches.size());
+      batches.push_back({.topology = placed.topology.get(), .grain = {}, .position = {}, .velocity = {}});
+      batches[b].grain.fill(-1);
+      batches[b].position.resize(placed.topology->grid.nodes());
+      batches[b].velocity.resize(placed.topology->grid.nodes());
+    }
+    GrainBatch& batch = batches[b];
+    int lane = 0;
+    while (batch.grain[lane] >= 0) ++lane;
+    batch.grain[lane] = g;
+    place_[g] = {b, lane};
+    const double c = std::cos(placed.angle), s = std::sin(placed.angle);
+    for (int free = lane; free < Wide::size; ++free) {  // the lanes without a grain repeat the last one
+      batch.radius.set(free, placed.radius);
+      batch.placed_along[0].set(free, c);
+      batch.placed_along[1].set(free, s);
+      for (int i = 0; i < placed.topology->grid.nodes(); ++i) {
+        const Vec<2>& X = placed.topology->grid.node[i];
+        const Vec<2> x = placed.centre + placed.radius * Vec<2>{c * X[0] - s * X[1], s * X[0] + c * X[1]};
+        for (int d = 0; d < 2; ++d) {
+          batch.position[i][d].set(free, x[d]);
+          batch.velocity[i][d].set(free, placed.velocity[d]);
+        }
+      }
+    }
+  }
+}
+
+double SoftGrains::mass(int grain) const {
+  return density * shapes_[grain]->area * radius_[grain] * radius_[grain];
+}
+
+void SoftGrains::gather_outline(std::vector<Vec<2>>& position) const {
+  position.resize(outline_size());
+  for (const GrainBatch& batch : batches)
+    for_each_vertex(batch, [&](int v, int i, int lane) {
+      position[v] = {batch.position[i][0][lane], batch.position[i][1][lane]};
+    });
+}
+
+void SoftGrains::scatter_outline(std::span<const Vec<2>> value, const GrainBatch& batch,
+                                 WideVectors& nodes) const {
+  for_each_vertex(batch, [&](int v, int i, int lane) {
+    for (int d = 0; d < 2; ++d) nodes[i][d].set(lane, nodes[i][d][lane] + value[v][d]);
+  });
+}
+
+Vec<2> SoftGrains::node_position(int grain, int node) const {
+  const GrainBatch& batch = batches[place_[grain].batch];
+  const int lane = place_[grain].lane;
+  return {batch.position[node][0][lane], batch.position[node][1][lane]};
+}
+
+Vec<2> SoftGrains::momentum() const {
+  Vec<2> sum;
+  for (const GrainBatch& batch : batches)
+    for (int i = 0; i < batch.topology->grid.nodes(); ++i)
+      for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+        for (int d = 0; d < 2; ++d) sum[d] += (node_mass(batch, i) * batch.velocity[i][d])[lane];
+  return sum;
+}
+
+double SoftGrains::kinetic_energy() const {
+  double sum = 0;
+  for (const GrainBatch& batch : batches)
+    for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
+      const Wide energy = 0.5 * node_mass(batch, i) * dot(batch.velocity[i], batch.velocity[i]);
+      for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) sum += energy[lane];
+    }
+  return sum;
+}
+
+}  // namespace softgrain

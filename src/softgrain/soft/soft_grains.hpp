@@ -1,0 +1,101 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "softgrain/geometry/wall.hpp"
+#include "softgrain/material/any_law.hpp"
+#include "softgrain/math/wide.hpp"
+#include "softgrain/soft/topology.hpp"
+
+namespace softgrain {
+
+using WideVectors = std::vector<Vec<2, Wide>>;
+
+/// Eight grains of one topology, one in each lane. Lanes without a grain repeat the first one and are not
+/// read.
+struct GrainBatch {
+  const Topology* topology = nullptr;
+  std::array<int, Wide::size> grain;      ///< index of the grain in each lane, -1 for none
+  Wide radius = 1.0;                      ///< R [m]
+  Vec<2, Wide> placed_along{{1.0, 0.0}};  ///< (cos, sin) of the angle of placement
+  WideVectors position;                   ///< (nodes) x_i [m]
+  WideVectors velocity;                   ///< (nodes) v_i [m/s]
+  /// First grain among the lanes whose bits are set, -1 if none holds a grain.
+  int grain_in(unsigned lanes) const {
+    for (int lane = 0; lane < Wide::size; ++lane)
+      if ((lanes >> lane & 1u) != 0 && grain[lane] >= 0) return grain[lane];
+    return -1;
+  }
+};
+
+/// One grain as it is placed: a shape, its size, and where it lies.
+struct GrainPlacement {
+  std::shared_ptr<const Topology> topology;
+  double radius = 1e-3;  ///< R [m], the unit of the topology
+  Vec<2> centre;         ///< [m]
+  double angle = 0;      ///< [rad] of the reference grid
+  Vec<2> velocity;       ///< [m/s]
+};
+
+/// Soft grains by total-Lagrangian MPM: each has its own grid and velocity field; they meet only through
+/// contact. Per metre of depth, plane strain.
+class SoftGrains {
+ public:
+  /// density rho [kg/m^3]. Grains of one topology share batches. Raises UsageError for radii or densities not
+  /// positive.
+  SoftGrains(std::vector<GrainPlacement> grains, AnyLaw law, double density);
+
+  int size() const { return static_cast<int>(radius_.size()); }
+  double radius(int grain) const { return radius_[grain]; }
+  /// rho pi R^2 for a disk [kg/m].
+  double mass(int grain) const;
+  const Topology& topology(int grain) const { return *shapes_[grain]; }
+  /// Mass of node i of the grains of a batch [kg/m].
+  Wide node_mass(const GrainBatch& batch, int node) const {
+    return density * batch.topology->node_volume[node] * (batch.radius * batch.radius);
+  }
+
+  /// Outline vertices of all grains, one after the other, counter-clockwise.
+  int outline_begin(int grain) const { return outline_begin_[grain]; }
+  int outline_end(int grain) const { return outline_begin_[grain + 1]; }
+  int outline_size() const { return outline_begin_.back(); }
+  int grain_of_vertex(int vertex) const { return grain_of_vertex_[vertex]; }
+  /// visit(vertex, node, lane) for all outline vertices of the grains of a batch.
+  template <class Visit>
+  void for_each_vertex(const GrainBatch& batch, Visit&& visit) const {
+    const ReferenceGrid& grid = batch.topology->grid;
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+      for (int i = grid.outline_begin, v = outline_begin_[batch.grain[lane]]; i < grid.nodes(); ++i, ++v)
+        visit(v, i, lane);
+  }
+  /// x of all outline vertices [m], from the batches.
+  void gather_outline(std::vector<Vec<2>>& position) const;
+  /// Values of vertices (force, increment) added to the nodes of a batch.
+  void scatter_outline(std::span<const Vec<2>> value, const GrainBatch& batch, WideVectors& nodes) const;
+
+  /// The batch and lane of a grain.
+  std::pair<const GrainBatch*, int> batch_of(int grain) const {
+    return {&batches[place_[grain].batch], place_[grain].lane};
+  }
+  Vec<2> node_position(int grain, int node) const;
+  Vec<2> momentum() const;        ///< sum_i m_i v_i [kg m/s per m]
+  double kinetic_energy() const;  ///< sum_i 1/2 m_i v_i^2 [J/m]
+
+  AnyLaw law;
+  double density = 0;  ///< rho [kg/m^3]
+  std::vector<GrainBatch> batches;
+
+ private:
+  struct Place {
+    int batch = 0, lane = 0;
+  };
+  std::vector<std::shared_ptr<const Topology>> shapes_;  // of each grain
+  std::vector<double> radius_;
+  std::vector<Place> place_;
+  std::vector<int> outline_begin_, grain_of_vertex_;
+};
+
+}  // namespace softgrain

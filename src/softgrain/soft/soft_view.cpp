@@ -1,0 +1,217 @@
+#include "softgrain/soft/soft_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/geometry/polygon.hpp"
+#include "softgrain/math/tensor.hpp"
+#include "softgrain/soft/elastic_contacts.hpp"
+#include "softgrain/soft/equilibrium.hpp"
+
+namespace softgrain {
+
+std::vector<ContactPoint> contact_points(const SoftView& view) {
+  const SoftGrains& grains = view.grains;
+  std::vector<Vec<2>> x;
+  grains.gather_outline(x);
+  std::vector<ContactPoint> points;
+  for (std::size_t c = 0; c < view.contacts.size(); ++c) {
+    const OutlineContact& contact = view.contacts[c];
+    if (!(view.impulse[c][0] > 0)) continue;
+    const int v = contact.vertex, g = grains.grain_of_vertex(v), begin = grains.outline_begin(g),
+              n = grains.outline_end(g) - begin;
+    const Vec<2>&before = x[begin + (v - begin + n - 1) % n], &after = x[begin + (v - begin + 1) % n];
+    const bool wall = contact.wall >= 0;
+    Vec<2> place = x[v];
+    if (wall)
+      place +=
+          0.5 * contact.share * (x[contact.master[2]] - x[contact.master[0]]) + contact.rise * contact.normal;
+    points.push_back({.a = g,
+                      .b = wall ? wall_index(contact.wall) : grains.grain_of_vertex(contact.master[0]),
+                      .force = (-1 / view.impulse_time) * impulse_vector(contact, view.impulse[c]),
+                      .normal = -contact.normal,
+                      .position = place,
+                      .length = (wall ? 0.5 : 0.25) * (norm(x[v] - before) + norm(x[v] - after))});
+  }
+  return points;
+}
+
+Outlines outlines_of(const SoftGrains& grains) {
+  Outlines all;
+  grains.gather_outline(all.vertex);
+  for (int g = 0; g < grains.size(); ++g) {
+    const int begin = grains.outline_begin(g), end = grains.outline_end(g);
+    all.begin.push_back(begin);
+    all.area +=
+        grains.topology(g).grid.fullness * polygon_area(std::span(all.vertex).subspan(begin, end - begin));
+  }
+  all.begin.push_back(grains.outline_size());
+  return all;
+}
+
+Bodies nodes_of(const SoftGrains& grains) {
+  Bodies nodes;
+  for (int g = 0; g < grains.size(); ++g) {
+    const auto [batch, lane] = grains.batch_of(g);
+    for (int i = 0; i < grains.topology(g).grid.nodes(); ++i) {
+      nodes.mass.push_back(grains.node_mass(*batch, i)[lane]);
+      nodes.velocity.push_back({batch->velocity[i][0][lane], batch->velocity[i][1][lane]});
+    }
+  }
+  return nodes;
+}
+
+std::vector<Vec<2>> centres_of(const SoftGrains& grains) {
+  std::vector<Vec<2>> centre(grains.size());
+  for (int g = 0; g < grains.size(); ++g) {
+    const auto [batch, lane] = grains.batch_of(g);
+    for (int i = 0; i < grains.topology(g).grid.nodes(); ++i)
+      centre[g] += (grains.node_mass(*batch, i)[lane] / grains.mass(g)) * grains.node_position(g, i);
+  }
+  return centre;
+}
+
+double stored_energy(const SoftGrains& grains) {
+  double energy = 0;
+  for (const GrainBatch& batch : grains.batches) {
+    const Wide elastic = elastic_energy(grains, batch);
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) energy += elastic[lane];
+  }
+  return energy;
+}
+
+double least_J(const SoftGrains& grains) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const GrainBatch& batch : grains.batches) {
+    const Wide J = least_J(batch);
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) least = std::min(least, J[lane]);
+  }
+  return least;
+}
+
+Scene soft_scene(const SoftView& view) {
+  const SoftGrains& grains = view.grains;
+  std::vector<Vec<2>> position;
+  std::vector<double> radius, pressure, dilatation, stress;
+  std::vector<std::int64_t> grain_of_point, grain_of_vertex;
+  for (int g = 0; g < grains.size(); ++g) {
+    const Topology& shape = grains.topology(g);
+    const std::vector<PointState> states = point_states(grains, g);
+    for (std::size_t p = 0; p < states.size(); ++p) {
+      Vec<2> x;
+      for (int a = 0; a < 4; ++a)
+        x += shape.points[p].shape[a] * grains.node_position(g, shape.grid.cell[p / 4][a]);
+      const double J = determinant(states[p].F);
+      position.push_back(x);
+      const double V = shape.grid.fullness * shape.points[p].volume;
+      radius.push_back(grains.radius(g) * std::sqrt(J * V / std::numbers::pi));
+      pressure.push_back(states[p].pressure);
+      dilatation.push_back(J);
+      stress.insert(stress.end(), states[p].stress.c.begin(), states[p].stress.c.end());
+      grain_of_point.push_back(g);
+    }
+    grain_of_vertex.insert(grain_of_vertex.end(), grains.outline_end(g) - grains.outline_begin(g), g);
+  }
+  std::vector<Vec<2>> outline, forces;
+  grains.gather_outline(outline);
+  forces = contact_forces(grains, view.contacts, view.impulse, view.impulse_time);
+  Scene scene;
+  scene.particles["position"] = to_array(position);
+  scene.particles["radius"] = {1, std::move(radius)};
+  scene.particles["pressure"] = {1, std::move(pressure)};
+  scene.particles["J"] = {1, std::move(dilatation)};
+  scene.particles["stress"] = {4, std::move(stress)};
+  scene.particles["grain"] = {1, std::move(grain_of_point)};
+  scene.outlines["position"] = to_array(outline);
+  scene.outlines["force"] = to_array(forces);
+  scene.outlines["grain"] = {1, std::move(grain_of_vertex)};
+  scene.contacts = grain_contacts(contact_points(view), grains.size());
+  return scene;
+}
+
+std::vector<GrainView> grain_views(const SoftGrains& grains) {
+  static_assert(sizeof(Vec<2, Wide>) == 2 * Wide::size * sizeof(double));
+  const auto lane_of = [](const WideVectors& nodes, int first, int lane) {
+    return VectorView{.begin = reinterpret_cast<const double*>(&nodes[first]) + lane,
+                      .rows = nodes.size() - static_cast<std::size_t>(first),
+                      .row = 2 * Wide::size,
+                      .component = Wide::size};
+  };
+  std::vector<GrainView> views;
+  for (int g = 0; g < grains.size(); ++g) {
+    const auto [batch, lane] = grains.batch_of(g);
+    views.push_back({.position = lane_of(batch->position, 0, lane),
+                     .velocity = lane_of(batch->velocity, 0, lane),
+                     .outline = lane_of(batch->position, grains.topology(g).grid.outline_begin, lane)});
+  }
+  return views;
+}
+
+void visit_nodes(SoftGrains& grains, StateVisitor& visit) {
+  const auto declare = [&](const Field& field, WideVectors GrainBatch::*nodes) {
+    std::vector<double> values;
+    for (const GrainBatch& batch : grains.batches)
+      for (const Vec<2, Wide>& v : batch.*nodes)
+        for (int d = 0; d < 2; ++d)
+          for (int lane = 0; lane < Wide::size; ++lane) values.push_back(v[d][lane]);
+    visit.rows(field, values, Wide::size);
+    const double* value = values.data();
+    for (GrainBatch& batch : grains.batches)
+      for (Vec<2, Wide>& v : batch.*nodes)
+        for (int d = 0; d < 2; ++d, value += Wide::size) v[d] = load_wide(value);
+  };
+  declare({"position", "m", Owner::node, Role::state, "x, then y of each node of eight grains"},
+          &GrainBatch::position);
+  declare({"velocity", "m/s", Owner::node, Role::state, "the same of their velocities"},
+          &GrainBatch::velocity);
+}
+
+namespace {
+
+constexpr std::size_t bodies_of_contact = 6;
+
+void check_bodies(std::span<const std::int64_t> bodies, int vertices, int walls) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const bool is_wall = i % bodies_of_contact == 1;
+    if (bodies[i] < (is_wall ? -1 : 0) || bodies[i] >= (is_wall ? walls : vertices))
+      throw IoError(fmt::format("the snapshot's array 'contact_bodies' holds {}", bodies[i]));
+  }
+}
+
+}  // namespace
+
+void visit_contacts(const SoftGrains& grains, int walls, std::vector<OutlineContact>& contacts,
+                    std::vector<Vec<2>>& impulse, StateVisitor& visit) {
+  std::vector<std::int64_t> bodies;
+  std::vector<Vec<5>> places;
+  for (const OutlineContact& c : contacts) {
+    bodies.insert(bodies.end(), {c.vertex, c.wall});
+    bodies.insert(bodies.end(), c.master.begin(), c.master.end());
+    places.push_back({c.share, c.normal[0], c.normal[1], c.gap, c.slip});
+  }
+  visit.list({"contact_bodies", "", Owner::contact, Role::start, "vertex, wall or -1, four master vertices"},
+             bodies, bodies_of_contact);
+  visit.list({"contact_places", "", Owner::contact, Role::start, "share, normal (2), gap [m], slip [m]"},
+             places);
+  visit.list({"contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t)"}, impulse);
+  if (!visit.reads()) return;
+  check_bodies(bodies, grains.outline_size(), walls);
+  if (places.size() != impulse.size() || bodies.size() != bodies_of_contact * places.size())
+    throw IoError("the snapshot's arrays of contacts have different lengths");
+  contacts.clear();
+  for (std::size_t c = 0; c < places.size(); ++c) {
+    const auto body = [&](std::size_t k) { return static_cast<int>(bodies[bodies_of_contact * c + k]); };
+    contacts.push_back({.vertex = body(0),
+                        .wall = body(1),
+                        .master = {body(2), body(3), body(4), body(5)},
+                        .share = places[c][0],
+                        .normal = {places[c][1], places[c][2]},
+                        .gap = places[c][3],
+                        .slip = places[c][4]});
+  }
+}
+
+}  // namespace softgrain

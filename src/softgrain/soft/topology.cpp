@@ -1,0 +1,94 @@
+#include "softgrain/soft/topology.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "softgrain/geometry/polygon.hpp"
+
+namespace softgrain {
+namespace {
+
+/// A vertex that turns by less than this, over their number, has no arc: 2 pi for a regular polygon.
+constexpr double straight_turn = 1;
+
+/// A vertex that turns by more than this many times what one of its neighbours does is a corner without an
+/// arc.
+constexpr double corner_turn = 2;
+
+BlockPattern pattern_of(const ReferenceGrid& grid) {
+  std::vector<std::array<int, 2>> edges;
+  for (const auto& cell : grid.cell)
+    for (int a = 1; a < 4; ++a)
+      for (int b = 0; b < a; ++b) edges.push_back({cell[a], cell[b]});
+  return {grid.nodes(), edges, grid.outline_nodes()};
+}
+
+CellShape shape_of(std::span<const MaterialPoint, 4> points) {
+  const auto L = [&](int a, int b) {
+    double sum = 0;
+    for (const MaterialPoint& p : points) sum += p.volume * dot(p.gradient[a], p.gradient[b]);
+    return sum;
+  };
+  CellShape shape{
+      .L_11 = L(1, 1), .L_12 = L(1, 2), .L_13 = L(1, 3), .L_22 = L(2, 2), .L_23 = L(2, 3), .L_33 = L(3, 3)};
+  double volume = 0;
+  for (std::size_t p = 0; p < 4; ++p)
+    shape.inverse_area[p] = 1 / (4 * points[p].volume), volume += points[p].volume;
+  shape.inverse_volume = 1 / volume;
+  return shape;
+}
+
+/// The arcs of a closed outline, counter-clockwise.
+std::vector<OutlineArc> arcs_of(std::span<const Vec<2>> outline) {
+  const std::size_t n = outline.size();
+  const auto at = [&](std::size_t v) { return outline[v % n]; };
+  std::vector<double> turn;
+  for (std::size_t v = 0; v < n; ++v) {
+    const Vec<2> before = at(v) - at(v + n - 1), after = at(v + 1) - at(v);
+    turn.push_back(std::atan2(-dot(before, perpendicular(after)), dot(before, after)));
+  }
+  std::vector<OutlineArc> arcs(n);
+  for (std::size_t v = 0; v < n; ++v) {
+    const double beside = std::min(turn[(v + n - 1) % n], turn[(v + 1) % n]);
+    if (turn[v] < straight_turn / static_cast<double>(n) || turn[v] > corner_turn * beside) continue;
+    const double l = norm(at(v + 1) - at(v + n - 1)) / 2;
+    arcs[v] = {.half_chord = l, .radius = l / std::sin(turn[v]), .end_sine = std::sin(turn[v] / 2)};
+  }
+  return arcs;
+}
+
+/// True for a regular polygon about the origin.
+bool is_round(std::span<const Vec<2>> outline) {
+  constexpr double nothing = 1e-9;
+  const double side = norm(outline[1] - outline[0]);
+  for (std::size_t v = 0; v < outline.size(); ++v)
+    if (std::abs(norm(outline[v]) - norm(outline[0])) > nothing ||
+        std::abs(norm(outline[(v + 1) % outline.size()] - outline[v]) - side) > nothing)
+      return false;
+  return true;
+}
+
+}  // namespace
+
+Topology::Topology(ReferenceGrid reference_grid)
+    : grid(std::move(reference_grid)),
+      points(material_points(grid)),
+      node_volume(grid.nodes(), 0),
+      arc(arcs_of(grid.outline())),
+      area(grid.fullness * polygon_area(grid.outline())),
+      round(is_round(grid.outline())),
+      pattern(pattern_of(grid)) {
+  for (std::size_t p = 0; p < points.size(); ++p)
+    for (int a = 0; a < 4; ++a)
+      node_volume[grid.cell[p / 4][a]] += grid.fullness * points[p].shape[a] * points[p].volume;
+  for (std::size_t p = 0; p < points.size(); p += 4)
+    cell_shapes.push_back(shape_of(std::span(points).subspan(p).first<4>()));
+  for (const auto& cell : grid.cell)
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b <= a; ++b)
+        cell_blocks.push_back(
+            {pattern.block(cell[a], cell[b]), a != b && pattern.transposed(cell[a], cell[b])});
+}
+
+}  // namespace softgrain
