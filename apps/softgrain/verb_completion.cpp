@@ -8,6 +8,7 @@
 #include "choices.hpp"
 #include "softgrain/io/case/case_forms.hpp"
 #include "softgrain/io/case/schema.hpp"
+#include "softgrain/observe/columns.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 
@@ -36,36 +37,10 @@ struct KeyWords {
   Words choices;
 };
 
-/// Columns of series.csv that somebody sums up or draws.
-const Words& series_columns() {
-  static const Words columns{"strain",
-                             "stress_top",
-                             "stress_bottom",
-                             "stress_side",
-                             "force_top",
-                             "force_bottom",
-                             "force_side",
-                             "wall_height",
-                             "phi",
-                             "phi_0",
-                             "z",
-                             "z_no_rattlers",
-                             "z_with_walls",
-                             "z_backbone",
-                             "rattlers",
-                             "backbone",
-                             "contacts",
-                             "inertial_number",
-                             "kinetic_energy",
-                             "wall_work",
-                             "dissipation",
-                             "energy_error",
-                             "elastic_energy",
-                             "attraction_energy",
-                             "area_ratio",
-                             "residual_max",
-                             "overlap_max"};
-  return columns;
+Words series_columns() {
+  Words names;
+  for (const Column& column : all_columns()) names.emplace_back(column.name);
+  return names;
 }
 
 Words choices_of_option(const CLI::Option& option, const std::string& name) {

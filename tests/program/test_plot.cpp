@@ -30,7 +30,7 @@ TEST_CASE("plot hands its arguments to Python word for word and ends with Python
   CHECK(result.exit_code == 4);
   CHECK(result.err.empty());
   const std::string words =
-      "--format\nsvg\n--kind\nall\n--output=-odd\n--normalise\n--\nslow run\nit's; $(fast)\n";
+      "--output=-odd\n--format=svg\n--normalise\n--\nslow run\nit's; $(fast)\n";
   CHECK(result.out.ends_with("/python/softgrain\nplot\n" + words));
 }
 

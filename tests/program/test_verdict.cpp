@@ -128,19 +128,19 @@ TEST_CASE("check refuses what run would refuse, with the same words") {
 TEST_CASE("check names keys without effect, the inertial number and the step, for people and for machines") {
   const Workshop workshop;
   workshop.file("case.toml",
-                "[experiment]\nmodel = 'mpm'\n[time]\nstep = '1 ns'\n[loading]\nwall_velocity = '1 mm/s'\n");
+                "[experiment]\nmodel = 'mpm'\n[solver]\nmax_sweeps = 60\n[loading]\nwall_velocity = '1 mm/s'\n");
   const ProcessResult text = workshop.softgrain({"check", "case.toml"});
-  CHECK(mentions(text.err, "note: time.step has no effect on mpm between plates: it acts only on bpm\n"));
+  CHECK(mentions(text.err, "note: solver.max_sweeps has no effect on mpm between plates: it acts only on bpm\n"));
   CHECK(mentions(text.err, "inertial number about 9.9e-06 at 10 MPa, below 1e-3: quasi-static\n"));
   CHECK(mentions(text.err, "time step "));
   const json machine = json::parse(workshop.softgrain({"check", "case.toml", "--json"}).out);
-  CHECK(machine.at("without_effect") == json{"time.step"});
+  CHECK(machine.at("without_effect") == json{"solver.max_sweeps"});
   // v sqrt(rho/E) = 1e-3 sqrt(990/1e7)
   CHECK(machine.at("advice").at("inertial_number") == doctest::Approx(9.95e-6).epsilon(1e-3));
   const ProcessResult run =
       workshop.softgrain({"run", "case.toml", "--set=loading.max_strain=1e-3",
                           "--set=loading.wall_velocity=1 m/s", "--set=mpm.cells=4", "-o", "out"});
-  const auto first = run.err.find("note: time.step");
+  const auto first = run.err.find("note: solver.max_sweeps");
   CHECK(first != std::string::npos);
-  CHECK(run.err.find("note: time.step", first + 1) == std::string::npos);  // once
+  CHECK(run.err.find("note: solver.max_sweeps", first + 1) == std::string::npos);  // once
 }
