@@ -77,13 +77,16 @@ void Path::add(const StageText& stage, bool last) {
   moving = motion;
 }
 
+/// 0.1 - 0.08 = 0.02, as who wrote the strains means it.
+double as_decimals(double difference) { return std::stod(fmt::format("{:.12g}", difference)); }
+
 /// Strains at which the plate turns back, and how far it goes each time.
 void give_turns(const Path& path, const StageText& last, CaseDraft& draft) {
   if (path.ends.size() % 2 == 0) not_yet_at(last, "the last way is one together");
   std::vector<double> turns;
   std::optional<double> back;
   for (std::size_t k = 0; k + 1 < path.ends.size(); k += 2) {
-    const double way = path.ends[k] - path.ends[k + 1];
+    const double way = as_decimals(path.ends[k] - path.ends[k + 1]);
     if (back && std::abs(way - *back) > 1e-9 * std::abs(*back))
       not_yet_at(last, "all ways apart have the same length in strain");
     back = way;

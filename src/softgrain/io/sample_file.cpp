@@ -56,6 +56,8 @@ class Reader {
   explicit Reader(const std::string& kind) : kind_(kind) {}
 
   SampleText read(std::string_view text) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // with which spreadsheets begin
+    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
     for (; !text.empty() && result_.issues.size() < most_issues; ++line_) {
       std::string_view line = text.substr(0, text.find('\n'));
       text.remove_prefix(std::min(text.size(), line.size() + 1));

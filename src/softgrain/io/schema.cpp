@@ -140,7 +140,8 @@ std::vector<Key> all_keys() {
       KEY(sample.aspect, "", from_to(1e-4, 1e4), "width over height of the box at the start", random),
       KEY(sample.sizes, "", its_words(),
           "law of the diameters, by number of grains; uniform between smallest and largest; lognormal with a median, cut "
-          "off below smallest and above largest; list: sample.diameters", random),
+          "off below smallest and above largest; list: sample.diameters; left out: list where diameters are given, lognormal "
+          "where a median is", random),
       KEY(sample.smallest_diameter, "mm", positive(), "of the grains in the box, or lower cut-off", random_between),
       KEY(sample.largest_diameter, "mm", positive(), "of the grains in the box, or upper cut-off", random_between),
       KEY(sample.median_diameter, "mm", positive(), "median of lognormal sizes before they are cut off", lognormal),

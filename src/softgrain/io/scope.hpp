@@ -37,9 +37,8 @@ inline constexpr Scope updated_lagrangian{"on updated_lagrangian mpm", is_update
 inline constexpr Scope implicit{
     "on implicit mpm",
     [](const Case& c) { return is_total_lagrangian(c) && c.mpm.integrator == Integrator::backward_euler; }};
-inline constexpr Scope with_pairs{"on bpm or between the grains of a box", [](const Case& c) {
-                                    return is_bpm(c) || (is_in_a_box(c) && c.sample.grains > 1);
-                                  }};
+inline constexpr Scope with_pairs{"between the grains of a box",
+                                  [](const Case& c) { return is_in_a_box(c) && c.sample.grains > 1; }};
 inline bool is_placed(const Case& c) { return is_in_a_box(c) && !c.sample.placed.empty(); }
 inline bool is_random(const Case& c) { return is_in_a_box(c) && c.sample.placed.empty(); }
 inline bool has_sizes(const Case& c, SizeLaw law) { return is_random(c) && c.sample.sizes == law; }

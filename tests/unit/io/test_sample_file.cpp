@@ -21,7 +21,8 @@ std::string refusal(const std::string& text, const std::string& kind = "") {
 
 TEST_CASE("a table of grains is read in its units, exactly, in any order of columns") {
   const SampleText sample = read_sample_text(
-      "# three grains\r\n\r\n  radius [mm] ,kind, x [cm], y, angle [deg]\r\n0.9, a, 0.1, 2e-3, 90\r\n# more\n"
+      "\xEF\xBB\xBF# three grains\r\n\r\n  radius [mm] ,kind, x [cm], y, angle [deg]\r\n0.9, a, 0.1, 2e-3, "
+      "90\r\n# more\n"
       "1, a, -0.25, +1.5e-3, 0\n0.7,a,0,0,-45",
       "");
   CHECK(sample.issues.empty());

@@ -79,16 +79,17 @@ TEST_CASE("a key that is said to have no effect changes no bit of the motion") {
 
 TEST_CASE("a note names keys that do nothing, and where they would act") {
   const std::string text =
-      "[experiment]\nmodel = 'mpm'\n[time]\nstep = '1 ns'\n[contact]\npush_out = 1\n[sample]\ngrains = 5\n"
+      "[experiment]\nmodel = 'mpm'\n[contact]\npush_out = 1\n[sample]\ngrains = 5\n"
       "[solver]\nmin_sweeps = 10\n";  // its default: no wish
   const CaseReading reading = parse_case_with_notes(text, "case.toml", {"solver.max_sweeps=50"});
   CHECK(reading.without_effect ==
-        std::vector<std::string>{"contact.push_out", "solver.max_sweeps", "time.step", "sample.grains"});
-  CHECK(notes_on_effect(reading.the_case, reading.without_effect) ==
-        std::vector<std::string>{
-            "note: contact.push_out, solver.max_sweeps and time.step have no effect on mpm "
-            "between plates: they act only on bpm",
-            "note: sample.grains has no effect on mpm between plates: it acts only in a box"});
+        std::vector<std::string>{"contact.push_out", "solver.max_sweeps", "sample.grains"});
+  CHECK(
+      notes_on_effect(reading.the_case, reading.without_effect) ==
+      std::vector<std::string>{
+          "note: contact.push_out and solver.max_sweeps have no effect on mpm between plates: they act "
+          "only on bpm",
+          "note: sample.grains has no effect on mpm between plates: it acts only on random grains in a box"});
 }
 
 TEST_CASE("no template and no resolved case gives a key without effect") {
