@@ -136,7 +136,14 @@ TEST_CASE("new writes a case that check accepts, and never overwrites one") {
   CHECK(made.out == "squeeze/case.toml\n");
   const std::string text = read_text(directory.path() / "squeeze/case.toml");
   CHECK(mentions(text, "radius = \"5 mm\""));
-  CHECK(softgrain_program({"check", "squeeze/case.toml"}, here).exit_code == 0);
+  CHECK(text.starts_with("#:schema ./case.schema.json\n"));
+  CHECK(read_text(directory.path() / "squeeze/case.schema.json") == softgrain_program({"schema"}, here).out);
+  CHECK_FALSE(mentions(text, "\n[mpm]\n"));
+  CHECK(softgrain_program({"new", "whole", "--all"}, here).exit_code == 0);
+  CHECK(mentions(read_text(directory.path() / "whole/case.toml"), "\n[mpm]\n"));
+  const auto checked = softgrain_program({"check", "squeeze/case.toml"}, here);
+  CHECK(checked.exit_code == 0);
+  CHECK(softgrain_program({"check", "whole/case.toml"}, here).out == checked.out);
   directory.file("squeeze/case.toml", "mine");
   const auto again = softgrain_program({"new", "squeeze"}, here);
   CHECK(again.exit_code == 2);

@@ -29,6 +29,9 @@ double wave_modulus(const Case& c) {
 double grain_area(const Case& c) {
   if (!is_in_a_box(c)) return std::numbers::pi * c.grain.radius * c.grain.radius;
   if (!c.sample.placed.empty()) return c.sample.packing_fraction * c.box.width * c.box.height;
+  const double a = c.sample.smallest_diameter, b = c.sample.largest_diameter;
+  if (c.sample.sizes == SizeLaw::uniform)  // in the digits that snapshots have always had
+    return c.sample.grains * std::numbers::pi / 12 * (a * a + a * b + b * b);
   return c.sample.grains * std::numbers::pi / 4 * mean_square_diameter(diameter_law(c.sample));
 }
 

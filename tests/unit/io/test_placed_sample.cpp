@@ -27,11 +27,10 @@ struct PlacedCase {
 
   explicit PlacedCase(const std::string& table, const std::string& more = "") {
     directory.file("grains.csv", table);
-    path =
-        directory.file("case.toml",
-                       "[experiment]\nloading = 'compaction'\nmodel = 'mpm'\n[mpm]\ncells = 4\n[bpm]\n"
-                       "primaries = 30\nlibrary = 2\n[loading]\nmax_strain = 0.1\nwall_velocity = '5 m/s'\n" +
-                           more + "[sample]\nfile = 'grains.csv'\n");
+    path = directory.file("case.toml",
+                          "[experiment]\nloading = 'compaction'\nmodel = 'mpm'\n[mpm]\ncells = "
+                          "4\n[loading]\nmax_strain = 0.1\nwall_velocity = '5 m/s'\n" +
+                              more + "[sample]\nfile = 'grains.csv'\n");
   }
   Case read(const std::vector<std::string>& sets = {}) const { return read_case(path, sets); }
   std::string refusal(const std::vector<std::string>& sets = {}) const {
@@ -80,7 +79,8 @@ TEST_CASE("three grains of a file run in both models, with their places, sizes a
   const PlacedCase source(three);
   for (const char* model : {"mpm", "bpm"}) {
     CAPTURE(model);
-    const Case c = source.read({std::string("experiment.model=") + model});
+    const Case c =
+        source.read({std::string("experiment.model=") + model, "bpm.primaries=30", "bpm.library=2"});
     const auto simulation = create_simulation(c);
     const auto start = test::next_row(*simulation);
     CHECK(value_of(start, "wall_height") == doctest::Approx(3.9e-3));
@@ -105,7 +105,7 @@ TEST_CASE("a file's own mistakes come with the case's, each with its file, line,
   const PlacedCase bad("x [mm], y [mm], radius [mm]\n1, 1, 1\n1, 3, -1\n5, ?, 1\n", "[grain]\ndensty = 1\n");
   const std::string message = bad.refusal();
   CAPTURE(message);
-  CHECK(mentions(message, "case.toml:13:1: error: unknown key 'grain.densty'"));
+  CHECK(mentions(message, "case.toml:10:1: error: unknown key 'grain.densty'"));
   CHECK(mentions(message,
                  "grains.csv:3:7: error: radius = -1 must be > 0\n    3 | 1, 3, -1\n      |       ^\n"));
   CHECK(mentions(message, "grains.csv:4:4: error: y = '?' is not a number"));

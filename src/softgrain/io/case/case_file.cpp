@@ -57,12 +57,13 @@ class CaseReader {
     return names;
   }
 
+  /// Does complete_sample say what this key says?
   bool is_derived(const Key& key) const {
     const Case::Sample& sample = draft_.the_case.sample;
-    if (sample.placed.empty() && sample.sizes != SizeLaw::list) return false;
-    return key.name == "sample.grains" || key.name == "sample.packing_fraction" ||
-           key.name == "sample.aspect" || key.name == "sample.smallest_diameter" ||
-           key.name == "sample.largest_diameter";
+    if (key.name == "sample.smallest_diameter" || key.name == "sample.largest_diameter")
+      return !sample.placed.empty() || sample.sizes == SizeLaw::list;
+    return !sample.placed.empty() && (key.name == "sample.grains" || key.name == "sample.packing_fraction" ||
+                                      key.name == "sample.aspect");
   }
 
   /// A line that is no TOML is reported and left out, so that one slip of the pen does not hide the other
