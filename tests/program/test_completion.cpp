@@ -40,7 +40,8 @@ TEST_CASE("bash completes verbs, the options of a verb and the keys of a case") 
   CHECK(bash_offers("run case.toml --st") == "--stop-after\n");
   CHECK(bash_offers("report run --st") == "\n");
   CHECK(bash_offers("run case.toml --set contact.fr") == "contact.friction=\n");
-  CHECK(bash_offers("sweep case.toml --vary sample.s") == "sample.seed=\nsample.sizes=\nsample.smallest_diameter=\nsample.shares=\n");
+  CHECK(bash_offers("sweep case.toml --vary sample.s") ==
+        "sample.seed=\nsample.sizes=\nsample.smallest_diameter=\nsample.shares=\n");
   CHECK(bash_offers("run ca") == "\n");  // then bash offers files
 }
 

@@ -29,8 +29,7 @@ TEST_CASE("plot hands its arguments to Python word for word and ends with Python
       plot(folder, {"slow run", "it's; $(fast)", "-o", "-odd", "--format", "svg", "--normalise"});
   CHECK(result.exit_code == 4);
   CHECK(result.err.empty());
-  const std::string words =
-      "--output=-odd\n--format=svg\n--normalise\n--\nslow run\nit's; $(fast)\n";
+  const std::string words = "--output=-odd\n--format=svg\n--normalise\n--\nslow run\nit's; $(fast)\n";
   CHECK(result.out.ends_with("/python/softgrain\nplot\n" + words));
 }
 

@@ -44,8 +44,9 @@ TEST_CASE("a sweep makes each run as `softgrain run` would and sums them up in a
   const TemporaryDirectory folder;
   const auto swept = sweep(folder, {"--jobs", "2", "--set", "contact.wall_friction=0.3", "--column", "step"});
   REQUIRE_MESSAGE(swept.exit_code == 0, swept.err);
-  const auto one = softgrain::test::run({SOFTGRAIN_PROGRAM, "run", (folder.path() / "case.toml").string(),
-                                         "--set", "sample.seed=2", "--set", "contact.wall_friction=0.3", "-q"});
+  const auto one =
+      softgrain::test::run({SOFTGRAIN_PROGRAM, "run", (folder.path() / "case.toml").string(), "--set",
+                            "sample.seed=2", "--set", "contact.wall_friction=0.3", "-q"});
   REQUIRE(one.exit_code == 0);
   const auto case_of = [&](const char* run) { return read_text(folder.path() / run / "case.toml"); };
   CHECK(case_of("out/runs/seed_2") == case_of("case_run"));

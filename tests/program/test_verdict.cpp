@@ -127,10 +127,12 @@ TEST_CASE("check refuses what run would refuse, with the same words") {
 
 TEST_CASE("check names keys without effect, the inertial number and the step, for people and for machines") {
   const Workshop workshop;
-  workshop.file("case.toml",
-                "[experiment]\nmodel = 'mpm'\n[solver]\nmax_sweeps = 60\n[loading]\nwall_velocity = '1 mm/s'\n");
+  workshop.file(
+      "case.toml",
+      "[experiment]\nmodel = 'mpm'\n[solver]\nmax_sweeps = 60\n[loading]\nwall_velocity = '1 mm/s'\n");
   const ProcessResult text = workshop.softgrain({"check", "case.toml"});
-  CHECK(mentions(text.err, "note: solver.max_sweeps has no effect on mpm between plates: it acts only on bpm\n"));
+  CHECK(mentions(text.err,
+                 "note: solver.max_sweeps has no effect on mpm between plates: it acts only on bpm\n"));
   CHECK(mentions(text.err, "inertial number about 9.9e-06 at 10 MPa, below 1e-3: quasi-static\n"));
   CHECK(mentions(text.err, "time step "));
   const json machine = json::parse(workshop.softgrain({"check", "case.toml", "--json"}).out);

@@ -102,7 +102,7 @@ constexpr std::array table{
     Column{"dissipation_contact", "J/m", every_run, "of it by contacts between grains and with walls, friction included", ENERGY(contact)},
     Column{"dissipation_friction", "J/m", every_run, R"(of that by sliding: $-\sum p_t\cdot\tfrac12(u_t + u_t^+)$)", ENERGY(friction)},
     Column{"dissipation_integration", "J/m", elastic,
-        "by backward Euler, less what free grains get back with their spin; by the explicit step, which damps the mesh's own vibrations (53a): 0.01 to 4 % of the wall work in slow loading, up to 8 % in impacts; updated Lagrangian: also what is lost between points and nodes",
+        "by backward Euler, less what free grains get back with their spin; by the explicit step, which damps the mesh's own vibrations (53a); updated Lagrangian: also what is lost between points and nodes",
         NUMBER("dissipation_integration")},
     Column{"dissipation_damping", "J/m", elastic, R"(by `mpm.damping`, $-\sum\mathbf f^\mathrm{damp}\cdot\Delta\mathbf x$)", NUMBER("dissipation_damping")},
     Column{"energy_error", "J/m", every_run, "wall work less kinetic, stored and dissipated energy (31): what the budget leaves unexplained", ENERGY(error)},
