@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "softgrain/observe/fabric.hpp"
+
 namespace softgrain {
 namespace {
 
@@ -82,8 +84,8 @@ constexpr std::array table{
     Column{"inertial_number", "", boxes,
         R"($I = \lvert\dot\varepsilon\rvert\,d\,\sqrt{\rho/p}$; below $10^{-3}$ loading is quasi-static (63). 0 while nothing touches, as in the first row)",
         PACKING(p.inertial_number)},
-    Column{"anisotropy", "", boxes, "$a$ of the normals between grains (64)", PACKING(p.anisotropy)},
-    Column{"force_mean", "N/m", boxes, "mean normal force of the pairs", PACKING(p.force_mean)},
+    Column{"anisotropy", "", boxes, "$a$ of the normals between grains (64)", PACKING(fabric(p.network.pairs).anisotropy)},
+    Column{"force_mean", "N/m", boxes, "mean normal force of the pairs", PACKING(force_distribution(p.network.pairs).mean)},
     Column{"circularity", "", boxes, R"(mean over the grains of $4\pi A_g/P_g^2$ (65))", PACKING(p.circularity)},
     Column{"aspect_ratio", "", boxes, R"(mean over the grains of $\sqrt{M_1/M_2}$ (65))", PACKING(p.aspect_ratio)},
     Column{"least_J", "", elastic,

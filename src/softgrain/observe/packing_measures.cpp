@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "softgrain/observe/energy.hpp"
-#include "softgrain/observe/fabric.hpp"
 #include "softgrain/observe/grain_shape.hpp"
 #include "softgrain/observe/stress.hpp"
 
@@ -12,14 +11,13 @@ namespace softgrain {
 PackingMeasures measure_packing(const PackingView& packing) {
   const double area = packing.width * packing.height;
   const auto grains = static_cast<int>(packing.radius.size());
-  const ContactNetwork network = contact_network(packing.contacts, grains);
   const Mat<2> motion = kinetic_stress(packing.mass, packing.velocity, area);
-  PackingMeasures measures{.phi = packing_fraction(packing.radius, packing.grain_area, area),
-                           .coordination = coordination(network),
+  PackingMeasures measures{.network = contact_network(packing.contacts, grains),
+                           .phi = packing_fraction(packing.radius, packing.grain_area, area),
                            .stress = contact_stress(packing.contacts, packing.centre, area) + motion,
-                           .stress_kinetic = trace(motion) / 2,
-                           .anisotropy = fabric(network.pairs).anisotropy,
-                           .force_mean = force_distribution(network.pairs).mean};
+                           .stress_kinetic = trace(motion) / 2};
+  const ContactNetwork& network = measures.network;
+  measures.coordination = coordination(network);
   std::vector<double> perimeter;
   double diameter = 0;
   for (int g = 0; g < grains; ++g) {

@@ -22,15 +22,16 @@ struct PackingView {
   double strain_rate = 0;            ///< [1/s]
 };
 
-/// What a packing shows, the same for every model; columns.cpp defines each.
+/// What a packing shows, the same for every model; columns.cpp defines each. A column of contacts comes from
+/// the network by a function of its own.
 struct PackingMeasures {
-  PackingFraction phi;
-  Coordination coordination;
+  ContactNetwork network{};
+  PackingFraction phi{};
+  Coordination coordination{};
   double sides = 0;
-  Mat<2> stress;              ///< of contacts and motion, compression positive [Pa]
+  Mat<2> stress{};            ///< of contacts and motion, compression positive [Pa]
   double stress_kinetic = 0;  ///< [Pa]
-  double inertial_number = 0, anisotropy = 0;
-  double force_mean = 0;  ///< [N/m]
+  double inertial_number = 0;
   double circularity = 0, aspect_ratio = 0;
 };
 PackingMeasures measure_packing(const PackingView& packing);
