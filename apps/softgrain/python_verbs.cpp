@@ -73,7 +73,7 @@ std::vector<std::string> words_of(const CLI::App& verb, const Json& table) {
       if (is_positional(option))
         places.push_back(value);
       else
-        words.push_back(option.contains("value") ? name + "=" + value : name);
+        words.push_back(option.contains("value") ? fmt::format("{}={}", name, value) : name);
     }
   }
   words.emplace_back("--");

@@ -13,9 +13,9 @@ using enum ColumnGroup;
 constexpr std::string_view as_before;
 
 /// Of a wall, by its number.
-template <int wall>
+template <int Number>
 Value force_on(const Observation& o) {
-  return o.wall_force[wall];
+  return o.wall_force[Number];
 }
 
 Value mean_side_force(const Observation& o) { return (o.wall_force[2] + o.wall_force[3]) / 2; }

@@ -25,7 +25,7 @@ struct FormKey {
   std::vector<std::string> keys;  ///< of the schema, for which it stands
   std::string_view text;
   std::vector<std::string> words = {}, later = {};
-  std::string_view unit = "";
+  std::string_view unit = {};
   Range range = {};
 };
 

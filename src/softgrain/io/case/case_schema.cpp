@@ -85,7 +85,7 @@ void add_forms(Json& object, const std::string& prefix) {
     if (!form.name.starts_with(prefix + ".")) continue;
     const std::string rest = form.name.substr(prefix.size() + 1), own = rest.substr(0, rest.find('.'));
     if (!done.insert(own).second) continue;
-    const std::string name = prefix + "." + own;
+    const std::string name = fmt::format("{}.{}", prefix, own);
     Json inner = object_schema();
     add_forms(inner, name);
     const FormKey* whole = find_form(name);

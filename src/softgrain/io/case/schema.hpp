@@ -45,7 +45,7 @@ struct Key {
   Range range;
   std::string_view text;
   Scope acts = scope::everywhere;   ///< where it acts; elsewhere it is taken, and a note says so
-  std::string_view zero_word = "";  ///< a word for the number 0: "auto"
+  std::string_view zero_word = {};  ///< a word for the number 0: "auto"
 
   std::string table() const { return name.substr(0, name.find('.')); }
   std::string short_name() const { return name.substr(name.find('.') + 1); }

@@ -13,6 +13,8 @@ struct Word {
   Enum value;
   std::string_view word;
 };
+template <class Enum>
+Word(Enum, std::string_view) -> Word<Enum>;  // which clang 14 does not deduce of an aggregate
 
 /// The one table of the words of an enum, in the order in which messages and schema list them.
 template <class Enum>
