@@ -54,7 +54,7 @@ StepReport ElasticGrains<Dynamics>::step(Box<2>& box, double dt) {
   dynamics_.walls = box.walls;
   const SoftStepReport soft = dynamics_.step(dt);
   if constexpr (std::is_same_v<Dynamics, ExplicitDynamics>)
-    if (const int grain = dynamics_.grains.runaway_grain(dt); grain >= 0)
+    if (const int grain = dynamics_.grains.runaway_grain(dynamics_.impulse_time); grain >= 0)
       throw NumericalError(fmt::format(
           "grain {} moves by more than half its radius in a step; use a smaller time step", grain));
   for (std::size_t w = 0; w < box.walls.size(); ++w) {
