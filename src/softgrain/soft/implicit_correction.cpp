@@ -102,9 +102,12 @@ double ImplicitDynamics::unbalanced_force(std::span<const Vec<2>> contact_force)
   });
   double scale = 0;
   for (const Vec<2>& f : contact_force) scale += norm(f) / grains.size();
+  return std::sqrt(std::ranges::max(largest)) / std::max(scale, least_contact_force());
+}
+
+double ImplicitDynamics::least_contact_force() const {
   const double wave_speed = smallest_radius_ / wave_time_;
-  const double stiffness = grains.density * wave_speed * wave_speed;
-  return std::sqrt(std::ranges::max(largest)) / std::max(scale, least_force * stiffness * mean_radius_);
+  return least_force * grains.density * wave_speed * wave_speed * mean_radius_;
 }
 
 /// For each grain by itself and dx its last move:
