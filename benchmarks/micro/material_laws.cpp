@@ -75,5 +75,5 @@ int main(int argc, char** argv) {
           measure<2>(choice.name, law, results);
           measure<3>(choice.name, law, results);
         },
-        choice.make(10e6, 0.45));
+        choice.make({.young_modulus = 10e6, .poisson_ratio = 0.45, .c20 = -1e5, .c30 = 1e5}));
 }

@@ -16,7 +16,7 @@ double mean_distance(const Case& c) { return 2 * c.grain.radius * std::sqrt(0.84
 double stress_of(const Case& c) {
   if (is_in_a_box(c) && c.loading.hold_stress > 0) return c.loading.hold_stress;
   if (is_in_a_box(c) && c.loading.max_stress > 0) return c.loading.max_stress;
-  if (c.experiment.model == GrainModel::mpm) return c.mpm.young_modulus;
+  if (c.experiment.model == GrainModel::mpm) return c.mpm.material.young_modulus;
   return !is_in_a_box(c) ? c.bpm.attraction / mean_distance(c) : c.bpm.cohesive_pressure;
 }
 

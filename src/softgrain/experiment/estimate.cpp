@@ -21,8 +21,8 @@ double smallest_radius(const Case& c) {
 
 /// rho c^2 of pressure waves in elastic grains [Pa].
 double wave_modulus(const Case& c) {
-  const double nu = c.mpm.poisson_ratio;
-  return c.mpm.young_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+  const double nu = c.mpm.material.poisson_ratio;
+  return c.mpm.material.young_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
 }
 
 /// Of all grains, undeformed, in the mean [m^2].

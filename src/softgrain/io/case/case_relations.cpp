@@ -7,10 +7,12 @@
 #include <tuple>
 #include <utility>
 
+#include "softgrain/core/error.hpp"
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/io/case/scope.hpp"
 #include "softgrain/io/case/words.hpp"
+#include "softgrain/material/any_law.hpp"
 
 namespace softgrain {
 namespace {
@@ -148,10 +150,28 @@ std::string formulation_cannot(const Case& c) {
   return "";
 }
 
+/// What the law says of its parameters together.
+std::string law_impossible(const Case& c) {
+  if (c.experiment.model != GrainModel::mpm) return "";
+  try {
+    make_law(c.mpm.law, c.mpm.material);
+    return "";
+  } catch (const UsageError& error) {
+    return fmt::format("mpm.law \"{}\": {}", word_of(c.mpm.law), error.what());
+  }
+}
+
+std::vector<std::string> keys_of_laws() {
+  std::vector<std::string> keys{"mpm.law"};
+  for (const MaterialParameter& p : material_parameters) keys.push_back(fmt::format("mpm.{}", p.name));
+  return keys;
+}
+
 }  // namespace
 
 const std::vector<Relation>& case_relations() {
   static const std::vector<Relation> relations{
+      {keys_of_laws(), law_impossible},
       {{"loading.unload_at"}, unloading_not_ascending},
       {{"loading.unload_at", "loading.max_strain"}, unloading_after_the_end},
       {{"loading.unload_by", "loading.unload_at"}, unloading_below_zero},
