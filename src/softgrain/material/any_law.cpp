@@ -5,11 +5,15 @@
 namespace softgrain {
 namespace {
 
+template <class Law>
+constexpr bool is_whole = (SplitLaw<Law, 2> && ElasticLaw<Law, 3>) ||
+                          (SplitHistoryLaw<Law, 2> && HistoryLaw<Law, 3>);
+
 template <class... Laws>
-constexpr bool all_elastic(const std::variant<Laws...>*) {
-  return ((SplitLaw<Laws, 2> && ElasticLaw<Laws, 3>)&&...);
+constexpr bool all_whole(const std::variant<Laws...>*) {
+  return (is_whole<Laws> && ...);
 }
-static_assert(all_elastic(static_cast<const AnyLaw*>(nullptr)));
+static_assert(all_whole(static_cast<const AnyLaw*>(nullptr)));
 
 constexpr bool in_order() {
   for (const LawChoice& choice : law_choices())
@@ -19,4 +23,9 @@ constexpr bool in_order() {
 static_assert(in_order());
 
 }  // namespace
+
+bool has_history(const AnyLaw& law) {
+  return std::visit([]<class Law>(const Law&) { return HistoryLaw<Law, 2>; }, law);
+}
+
 }  // namespace softgrain

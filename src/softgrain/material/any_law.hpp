@@ -10,13 +10,14 @@
 #include "softgrain/material/neo_hookean.hpp"
 #include "softgrain/material/small_strain_hooke.hpp"
 #include "softgrain/material/st_venant_kirchhoff.hpp"
+#include "softgrain/material/von_mises.hpp"
 #include "softgrain/material/yeoh.hpp"
 
 namespace softgrain {
 
 /// A law chosen at run time: std::visit it once outside the loop over points.
 using AnyLaw = std::variant<NeoHookean<LogVolume>, NeoHookean<QuadraticVolume>, Hencky, Corotated,
-                            SmallStrainHooke, StVenantKirchhoff, Yeoh>;
+                            SmallStrainHooke, StVenantKirchhoff, Yeoh, VonMises>;
 
 /// A law and its name in case files.
 struct LawChoice {
@@ -30,6 +31,7 @@ struct LawChoice {
   AnyLaw (*make)(const MaterialParameters&);
   std::array<Parameter, 6> more{};  ///< what it takes beside E and nu
 
+  constexpr bool flows() const { return takes(&MaterialParameters::yield_stress); }
   constexpr bool takes(Parameter parameter) const {
     return parameter == &MaterialParameters::young_modulus ||
            parameter == &MaterialParameters::poisson_ratio || std::ranges::count(more, parameter) > 0;
@@ -68,10 +70,28 @@ inline constexpr std::array law_table{
                 return yeoh(p.young_modulus, p.poisson_ratio, p.c20, p.c30);
               },
               {&MaterialParameters::c20, &MaterialParameters::c30}},
+    LawChoice{MaterialLaw::von_mises,
+              "von_mises",
+              "metal: elastic as hencky, flows at von Mises' stress yield_stress, hardens, resists a rate",
+              "",
+              [](const MaterialParameters& p) -> AnyLaw {
+                return von_mises(p.young_modulus, p.poisson_ratio,
+                                 {.yield_stress = p.yield_stress,
+                                  .hardening = p.hardening_modulus,
+                                  .saturation = p.saturation_stress,
+                                  .rate = p.saturation_rate,
+                                  .viscosity = p.viscosity});
+              },
+              {&MaterialParameters::yield_stress, &MaterialParameters::hardening_modulus,
+               &MaterialParameters::saturation_stress, &MaterialParameters::saturation_rate,
+               &MaterialParameters::viscosity}},
 };
 
 constexpr const auto& law_choices() { return law_table; }
 constexpr const LawChoice& law_choice(MaterialLaw law) { return law_table[static_cast<std::size_t>(law)]; }
+
+/// True for laws that remember: they flow.
+bool has_history(const AnyLaw& law);
 
 /// Raises UsageError for parameters that the law cannot have.
 inline AnyLaw make_law(MaterialLaw law, const MaterialParameters& parameters) {

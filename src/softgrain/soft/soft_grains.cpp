@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/soft/history.hpp"
 
 namespace softgrain {
 
@@ -29,6 +30,7 @@ SoftGrains::SoftGrains(std::vector<GrainPlacement> grains, AnyLaw material, doub
       batches[b].grain.fill(-1);
       batches[b].position.resize(placed.topology->grid.nodes());
       batches[b].velocity.resize(placed.topology->grid.nodes());
+      batches[b].history = undeformed_history(law, *placed.topology);
     }
     GrainBatch& batch = batches[b];
     int lane = 0;

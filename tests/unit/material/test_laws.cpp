@@ -180,6 +180,7 @@ TEST_CASE("every law is made by its own factory, and stands at its place in the 
   CHECK(std::holds_alternative<SmallStrainHooke>(make_law(MaterialLaw::small_strain_hooke, E, nu)));
   CHECK(std::holds_alternative<StVenantKirchhoff>(make_law(MaterialLaw::st_venant_kirchhoff, E, nu)));
   CHECK(std::holds_alternative<Yeoh>(make_law(MaterialLaw::yeoh, E, nu)));
+  CHECK(std::holds_alternative<VonMises>(make_law(MaterialLaw::von_mises, material)));
   CHECK_THROWS_AS(make_law(MaterialLaw::hencky, -1, nu), UsageError);
   for (const LawChoice& choice : law_choices()) CHECK(&law_choice(choice.law) == &choice);
 }
