@@ -87,7 +87,7 @@ double quasi_static_factor(const Case& c) {
 }
 
 /// How much more grains that flow take: fresh tangents in more iterations; a return to the yield surface.
-constexpr double flow_factor_implicit = 5, flow_factor_explicit = 8;
+constexpr double flow_factor_implicit = 5, flow_factor_explicit = 14;
 
 /// CPU time of a step [s], as measured on one core of a server of 2024 (docs/performance.md).
 double seconds_of_step(const Case& c, const Estimate& e) {

@@ -60,7 +60,8 @@ The explicit step takes 0.01 to 4 % of the wall work (`dissipation_integration`)
 share of the area of its grain (28), of a point by the law of its material. Of laws that flow it is a third of the
 whole trace, with the stress across the plane, and `von_mises_stress` and `plastic_strain` stand beside it.
 `coordination` of a primary counts its contacts that carry force. `force` of a contact is its normal impulse over the
-step; elastic grains that touch in many points have one contact with the sum. What each file calls them: [files of a run](format.md).
+step; elastic grains that touch in many points have one contact with the sum. What each file calls them:
+[files of a run](format.md).
 )";
 
 constexpr std::string_view checkpoint_begin = R"(# Arrays of a checkpoint
