@@ -54,7 +54,8 @@ void print_json(const CaseReading& reading, const Estimate& estimate, const Advi
                                        {{"time_step", advice.time_step},
                                         {"longest_step", finite(advice.longest_step)},
                                         {"inertial_number", advice.inertial_number},
-                                        {"stress", advice.stress}}},
+                                        {"stress", advice.stress},
+                                        {"blow", advice.blow}}},
                                       {"without_effect", reading.without_effect},
                                       {"notes", notes_of(reading)}};
   fmt::print("{}\n", result.dump(2));
@@ -73,6 +74,9 @@ void print_estimate(const Case& the_case, const Estimate& estimate) {
              duration_text(3600 * estimate.hours));
 }
 
+/// Of Advice::blow, for grains that are pressed.
+constexpr double most_of_a_blow = 0.1;
+
 /// "below 1e-3, quasi-static".
 std::string_view word_for(double inertial_number) {
   if (inertial_number < 1e-3) return "below 1e-3: quasi-static";
@@ -86,6 +90,12 @@ void print_advice(const Advice& advice) {
     fmt::print(stderr, ", {:.2g} of the longest stable one", advice.time_step / advice.longest_step);
   fmt::print(stderr, "\ninertial number about {:.1e} at {}, {}\n", advice.inertial_number,
              text(advice.stress, "Pa"), word_for(advice.inertial_number));
+  if (advice.blow > most_of_a_blow)
+    fmt::print(stderr,
+               "warning: walls at this speed strike with rho c v = {:.2g} times the yield stress, and points "
+               "may turn "
+               "inside out: lower loading.wall_velocity to below {:.1g} of what it is\n",
+               advice.blow, most_of_a_blow / advice.blow);
   if (advice.time_step > advice.longest_step)
     fmt::print(stderr,
                "warning: the time step is {:.2g} times the longest stable one, {}: take that, or less\n",

@@ -22,6 +22,11 @@ inline GrainPlacement placed(std::shared_ptr<const Topology> shape, double radiu
       .topology = std::move(shape), .radius = radius, .centre = centre, .angle = angle, .velocity = velocity};
 }
 
+/// Of any law: what flows does so at a stress far beyond the modulus.
+inline MaterialParameters parameters(double E, double nu) {
+  return {.young_modulus = E, .poisson_ratio = nu, .yield_stress = 100 * E};
+}
+
 inline Wall<2> floor_at(double y) { return {.point = {0, y}, .normal = {0, 1}, .velocity = {}}; }
 
 /// Bottom, top (coming down), left and right of a square box with a corner at the origin.

@@ -1,11 +1,13 @@
 #include "softgrain/experiment/advice.hpp"
 
 #include <cmath>
+#include <variant>
 
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/sample.hpp"
+#include "softgrain/material/any_law.hpp"
 
 namespace softgrain {
 namespace {
@@ -13,11 +15,21 @@ namespace {
 /// <a0> of one grain [m]: primaries of equal size that fill pi R^2 at a packing fraction of 0.84.
 double mean_distance(const Case& c) { return 2 * c.grain.radius * std::sqrt(0.84 / c.bpm.primaries); }
 
+bool flows(const Case& c) { return c.experiment.model == GrainModel::mpm && law_choice(c.mpm.law).flows(); }
+
 double stress_of(const Case& c) {
   if (is_in_a_box(c) && c.loading.hold_stress > 0) return c.loading.hold_stress;
   if (is_in_a_box(c) && c.loading.max_stress > 0) return c.loading.max_stress;
-  if (c.experiment.model == GrainModel::mpm) return c.mpm.young_modulus;
+  if (flows(c)) return c.mpm.material.yield_stress;
+  if (c.experiment.model == GrainModel::mpm) return c.mpm.material.young_modulus;
   return !is_in_a_box(c) ? c.bpm.attraction / mean_distance(c) : c.bpm.cohesive_pressure;
+}
+
+double blow_of(const Case& c) {
+  if (!flows(c)) return 0;
+  const double wave = std::visit([&](const auto& law) { return law.wave_speed(c.grain.density); },
+                                 make_law(c.mpm.law, c.mpm.material));
+  return c.grain.density * wave * c.loading.wall_velocity / c.mpm.material.yield_stress;
 }
 
 /// |d eps/dt| d at the start [m/s].
@@ -35,6 +47,7 @@ Advice advise(const Case& c) {
   advice.longest_step = c.experiment.model == GrainModel::bpm ? critical_bond_step(c) : longest_time_step(c);
   advice.stress = stress_of(c);
   advice.inertial_number = rate_times_diameter(c) * std::sqrt(c.grain.density / advice.stress);
+  advice.blow = blow_of(c);
   return advice;
 }
 

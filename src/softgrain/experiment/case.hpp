@@ -53,8 +53,7 @@ struct Case {
 
   struct Mpm {
     MaterialLaw law = MaterialLaw::neo_hookean;
-    double young_modulus = 10e6;  ///< E [Pa]
-    double poisson_ratio = 0.45;  ///< nu [-]
+    MaterialParameters material;  ///< of the law
     int cells = 16;               ///< along a side of the inner square: 14 cells^2 points in a grain
     Integrator integrator = Integrator::backward_euler;
     Formulation formulation = Formulation::total_lagrangian;  ///< or updated, explicit, for comparison

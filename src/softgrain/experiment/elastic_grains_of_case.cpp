@@ -18,7 +18,7 @@ constexpr double damping_share = 0.5;
 /// Of an implicit step: the walls come together by this share of the smallest radius, at most.
 constexpr double way_share = 0.01;
 
-AnyLaw law_of(const Case& c) { return make_law(c.mpm.law, c.mpm.young_modulus, c.mpm.poisson_ratio); }
+AnyLaw law_of(const Case& c) { return make_law(c.mpm.law, c.mpm.material); }
 
 SoftGrains grains_of(const Case& c, std::vector<GrainPlacement> placed) {
   return {std::move(placed), law_of(c), c.grain.density};

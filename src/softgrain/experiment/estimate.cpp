@@ -6,6 +6,7 @@
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/sample.hpp"
 #include "softgrain/experiment/stage.hpp"
+#include "softgrain/material/any_law.hpp"
 
 namespace softgrain {
 namespace {
@@ -21,8 +22,8 @@ double smallest_radius(const Case& c) {
 
 /// rho c^2 of pressure waves in elastic grains [Pa].
 double wave_modulus(const Case& c) {
-  const double nu = c.mpm.poisson_ratio;
-  return c.mpm.young_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+  const double nu = c.mpm.material.poisson_ratio;
+  return c.mpm.material.young_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
 }
 
 /// Of all grains, undeformed, in the mean [m^2].
@@ -85,6 +86,9 @@ double quasi_static_factor(const Case& c) {
   return 1 + 11 * s / (s + 43);
 }
 
+/// How much more grains that flow take: fresh tangents in more iterations; a return to the yield surface.
+constexpr double flow_factor_implicit = 5, flow_factor_explicit = 14;
+
 /// CPU time of a step [s], as measured on one core of a server of 2024 (docs/performance.md).
 double seconds_of_step(const Case& c, const Estimate& e) {
   constexpr int usual_sweeps = 17;
@@ -94,7 +98,11 @@ double seconds_of_step(const Case& c, const Estimate& e) {
     return e.contacts * sweeps * (c.solver.precision == Precision::single ? 4.1e-9 : 5.5e-9);
   if (is_updated_lagrangian(c)) return e.particles * 1.1e-7;
   const double batches = std::ceil(grains(c) / 8);  // a batch of 8 grains costs the same when it is not full
-  return batches * 8 * e.particles / grains(c) * (is_implicit(c) ? 1.3e-7 * quasi_static_factor(c) : 5.5e-9);
+  const double flow = !law_choice(c.mpm.law).flows() ? 1
+                      : is_implicit(c)               ? flow_factor_implicit
+                                                     : flow_factor_explicit;
+  return batches * 8 * e.particles / grains(c) * flow *
+         (is_implicit(c) ? 1.3e-7 * quasi_static_factor(c) : 5.5e-9);
 }
 
 /// CPU time of all rows of series.csv [s]: in a box each looks at every grain, whose outline must be found if

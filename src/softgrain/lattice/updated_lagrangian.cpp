@@ -15,6 +15,16 @@ namespace {
 /// cell. With lighter nodes a vertex would throw the points beside them about.
 constexpr double least_outline_share = 1e-3, least_node_share = 1e-5;
 
+/// visit(law) of an elastic law: points that move through the lattice do not keep what they remember.
+template <class Visit>
+auto with_elastic(const AnyLaw& law, Visit&& visit) {
+  const auto elastic = [&]<class Law>(const Law& some) -> decltype(visit(Hencky{})) {
+    if constexpr (ElasticLaw<Law, 2>) return visit(some);
+    throw UsageError("the updated Lagrangian formulation takes elastic laws only, none that flows");
+  };
+  return std::visit(elastic, law);
+}
+
 }  // namespace
 
 UpdatedLagrangianDynamics::UpdatedLagrangianDynamics(std::vector<PointGrain> point_grains,
@@ -28,6 +38,7 @@ UpdatedLagrangianDynamics::UpdatedLagrangianDynamics(std::vector<PointGrain> poi
       options(lagrangian_options),
       lattice_(options.shape, options.cell) {
   require(!grains.empty(), "there is no grain");
+  with_elastic(law, [](const auto&) {});
   require(density > 0, "the density must be > 0, got {} kg/m^3", density);
   require(options.cell > 0, "the cell must be > 0, got {} m", options.cell);
   require(options.pic_share >= 0 && options.pic_share <= 1, "pic_share must be in [0, 1], got {}",
@@ -126,7 +137,7 @@ void UpdatedLagrangianDynamics::strain_points(double dt) {
 /// what gravity and damping give.
 void UpdatedLagrangianDynamics::kick_nodes(double dt) {
   impulse_on_node_.assign(lattice_.nodes(), {});
-  std::visit([&](const auto& material) { add_internal_impulse(material, dt); }, law);
+  with_elastic(law, [&](const auto& material) { add_internal_impulse(material, dt); });
   for (int g = 0; g < static_cast<int>(grains.size()); ++g)
     lattice_.for_each_node(g, [&](int i, const Vec<2>& x) {
       const double m = lattice_.mass[i];
@@ -267,18 +278,16 @@ SoftStepReport UpdatedLagrangianDynamics::report_of(const SolverReport& solved) 
 
 double UpdatedLagrangianDynamics::elastic_energy() const {
   double sum = 0;
-  std::visit(
-      [&](const auto& material) {
-        for (const PointGrain& grain : grains)
-          for (int p = 0; p < grain.points(); ++p) sum += grain.volume[p] * material.energy(grain.F[p]);
-      },
-      law);
+  with_elastic(law, [&](const auto& material) {
+    for (const PointGrain& grain : grains)
+      for (int p = 0; p < grain.points(); ++p) sum += grain.volume[p] * material.energy(grain.F[p]);
+  });
   return sum;
 }
 
 Mat<2> UpdatedLagrangianDynamics::stress(int grain, int point) const {
   const Mat<2>& F = grains[grain].F[point];
-  const Mat<2> P = std::visit([&](const auto& material) { return material.stress(F); }, law);
+  const Mat<2> P = with_elastic(law, [&](const auto& material) { return material.stress(F); });
   return (1 / determinant(F)) * (P * transpose(F));
 }
 

@@ -43,22 +43,37 @@ concept SplitLaw = ElasticLaw<L, Dim> && requires(const L& law, const Mat<Dim>& 
   { law.dilatation().gradient(F) } -> std::same_as<Mat<Dim>>;
 };
 
-/// A law with memory (VonMises is one). `L::State<T>` is plain data, one per point, owned by the caller and
-/// changed once a step: every iteration of a step asks for energy (incremental potential), stress and tangent
-/// at F from the state at the *start* of the step, and when the step is accepted `state = law.advance(F,
-/// state)`. A rejected step so has nothing to undo.
+/// A law with memory (VonMises is one). `L::State<Dim, T>` is an array of numbers, one for each point, owned
+/// by the caller and changed once a step: every iteration of a step of dt [s] asks for energy (the
+/// incremental potential), stress and tangent at F from the state at the *start* of the step, and when the
+/// step is accepted advance(F, state, dt) gives the state at its end and what was dissipated [J/m^3]. A
+/// rejected step so has nothing to undo. `stored` is the elastic energy as it is, without a step.
 template <class L, int Dim, class T>
 concept RemembersIn = requires(const L& law, const Mat<Dim, T>& F,
-                               const typename L::template State<T>& state) {
-  { law.energy(F, state) } -> std::same_as<T>;
-  { law.stress(F, state) } -> std::same_as<Mat<Dim, T>>;
-  { law.tangent(F, state) } -> std::same_as<Mat<Dim * Dim, T>>;
-  { law.advance(F, state) } -> std::same_as<typename L::template State<T>>;
+                               const typename L::template State<Dim, T>& state, double dt) {
+  { law.energy(F, state, dt) } -> std::same_as<T>;
+  { law.stress(F, state, dt) } -> std::same_as<Mat<Dim, T>>;
+  { law.tangent(F, state, dt) } -> std::same_as<Mat<Dim * Dim, T>>;
+  { law.advance(F, state, dt).state } -> std::convertible_to<typename L::template State<Dim, T>>;
+  { law.advance(F, state, dt).dissipated } -> std::convertible_to<T>;
+  { law.stored(F, state) } -> std::same_as<T>;
+  { L::template undeformed<Dim, T>() } -> std::same_as<typename L::template State<Dim, T>>;
 };
 template <class L, int Dim>
 concept HistoryLaw = RemembersIn<L, Dim, double> && RemembersIn<L, Dim, Wide> &&
     requires(const L& law, double density) {
   { law.wave_speed(density) } -> std::same_as<double>;
+  { L::objective } -> std::convertible_to<bool>;
+};
+
+/// A law with memory that comes apart as SplitLaw does; what flows is all in the first part.
+template <class L, int Dim>
+concept SplitHistoryLaw = HistoryLaw<L, Dim> && requires(const L& law, const Mat<Dim>& F, double J) {
+  { law.deviatoric() } -> HistoryLaw<Dim>;
+  { law.volume().energy(J) } -> std::same_as<double>;
+  { law.volume().derivative(J) } -> std::same_as<double>;
+  { law.volume().second_derivative(J) } -> std::same_as<double>;
+  { law.dilatation().gradient(F) } -> std::same_as<Mat<Dim>>;
 };
 
 /// Whether a law may be asked about F, lane by lane: false where a point is turned inside out, which no

@@ -3,29 +3,31 @@
 
 namespace softgrain {
 
-/// An isotropic law in plane strain is a function psi(I, J) of I = F : F (2D) and J = det F. Here its value
-/// [J/m^3] and derivatives [Pa] at one F; stress and tangent follow without eigenvectors, so equal stretches
-/// are nothing special.
-template <class T>
-struct PlaneResponse {
-  Mat<2, T> F;
+/// An isotropic law in plane strain is a function psi(I, J) of I = F : F (2D) and J = det F, and some are in
+/// space. Here its value [J/m^3] and derivatives [Pa] at one F; stress and tangent follow without
+/// eigenvectors, so equal stretches are nothing special.
+template <int Dim, class T>
+struct InvariantResponse {
+  Mat<Dim, T> F;
   T energy, d_I, d_J, d_II, d_IJ, d_JJ;
 };
+template <class T>
+using PlaneResponse = InvariantResponse<2, T>;
 
 /// P = 2 psi_I F + psi_J cof F.
-template <class T>
-Mat<2, T> stress_of(const PlaneResponse<T>& psi) {
+template <int Dim, class T>
+Mat<Dim, T> stress_of(const InvariantResponse<Dim, T>& psi) {
   return (2.0 * psi.d_I) * psi.F + psi.d_J * cofactor(psi.F);
 }
 
 /// dP/dF = 2 psi_I 1 + 4 psi_II F (x) F + 2 psi_IJ (F (x) cof F + cof F (x) F) + psi_JJ cof F (x) cof F
 ///         + psi_J d(cof F)/dF.
-template <class T>
-Mat<4, T> tangent_of(const PlaneResponse<T>& psi) {
-  const Mat<2, T>& F = psi.F;
-  const Mat<2, T> cof = cofactor(F);
-  Mat<4, T> A;
-  for (int k = 0; k < 4; ++k) A(k, k) = 2.0 * psi.d_I;
+template <int Dim, class T>
+Mat<Dim * Dim, T> tangent_of(const InvariantResponse<Dim, T>& psi) {
+  const Mat<Dim, T>& F = psi.F;
+  const Mat<Dim, T> cof = cofactor(F);
+  Mat<Dim * Dim, T> A;
+  for (int k = 0; k < Dim * Dim; ++k) A(k, k) = 2.0 * psi.d_I;
   add_outer(A, T(1.0), F, (4.0 * psi.d_II) * F + (2.0 * psi.d_IJ) * cof);
   add_outer(A, T(1.0), cof, (2.0 * psi.d_IJ) * F + psi.d_JJ * cof);
   add_cofactor_derivative(A, psi.d_J, F);

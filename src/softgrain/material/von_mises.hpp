@@ -1,132 +1,228 @@
 #pragma once
+#include <algorithm>
+#include <array>
+
+#include "softgrain/material/dilatation.hpp"
+#include "softgrain/material/flow_rule.hpp"
 #include "softgrain/material/lame.hpp"
+#include "softgrain/material/plane_flow.hpp"
 #include "softgrain/material/principal_stretches.hpp"
+#include "softgrain/material/volumetric.hpp"
 
 namespace softgrain {
 
 /// Hencky's law with von Mises' plasticity (theory (44)-(46)): F = F_e F_p, the elastic part answers as
-/// Hencky, and flows at constant volume where |dev tau| would exceed sqrt(2/3) (yield_stress + hardening *
-/// alpha). The logarithmic strain makes the return to the yield surface that of small strain.
+/// Hencky, and flows at constant volume where von Mises' stress of Kirchhoff's tau would exceed what the rule
+/// allows. The logarithmic strain makes the return to the yield surface that of small strain.
 struct VonMises {
-  double lambda = 0;        ///< [Pa]
-  double mu = 0;            ///< shear modulus [Pa]
-  double yield_stress = 0;  ///< Kirchhoff stress at first yield in uniaxial tension [Pa]
-  double hardening = 0;     ///< its increase per equivalent plastic strain [Pa]
+  static constexpr bool objective = true;
+  double bulk = 0;  ///< K = lambda + 2/3 mu [Pa]
+  double mu = 0;    ///< shear modulus [Pa]
+  FlowRule rule;
 
-  /// What a point remembers of its flow. In plane strain too it flows across the plane.
-  template <class T>
-  struct State {
-    Mat<3, T> inverse_plastic = identity<3, T>();  ///< F_p^-1
-    T plastic_strain{};                            ///< equivalent plastic strain alpha
-  };
-
-  /// Incremental potential [J/m^3 of the undeformed material]: elastic energy at the end of the step plus the
-  /// plastic work of the step.
+  /// What a point remembers of its flow: C_p^-1 in the plane (11, 22, 12), or F_p^-1 in space row by row, and
+  /// last the equivalent plastic strain alpha.
   template <int Dim, class T>
-  T energy(const Mat<Dim, T>& F, const State<T>& state) const {
-    return response(F, state).psi.energy;
+  using State = std::array<T, Dim == 2 ? 4 : 10>;
+  template <int Dim, class T>
+  static State<Dim, T> undeformed() {
+    if constexpr (Dim == 2)
+      return {1.0, 1.0, 0.0, 0.0};
+    else
+      return {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+  }
+  template <class State>
+  static const auto& plastic_strain(const State& state) {
+    return state.back();
+  }
+
+  /// Incremental potential [J/m^3 of the undeformed material] of a step of dt [s]: elastic energy at its end
+  /// plus the plastic work of the step.
+  template <int Dim, class T>
+  T energy(const Mat<Dim, T>& F, const State<Dim, T>& state, double dt) const {
+    const auto step = flow(F, state, dt);
+    return step.stored + step.flow.potential;
   }
   /// First Piola-Kirchhoff stress P [Pa], the derivative of the incremental potential.
-  template <int Dim, class T>
-  Mat<Dim, T> stress(const Mat<Dim, T>& F, const State<T>& state) const {
-    // P = dpsi/dF_e F_p^-T
-    const Mat<3, T> full = stress_of(response(F, state).psi) * transpose(state.inverse_plastic);
-    Mat<Dim, T> P;
-    for (int i = 0; i < Dim; ++i)
-      for (int j = 0; j < Dim; ++j) P(i, j) = full(i, j);
-    return P;
+  template <class T>
+  [[gnu::always_inline]] Mat<2, T> stress(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
+    const PlaneStep<T> step = flow(F, state, dt);
+    return stress_of(step.trial, respond(step.trial, bulk, step.dW, step.ddW));
   }
   /// Algorithmic tangent dP_iJ/dF_kL [Pa] at (i Dim + J, k Dim + L); symmetric.
+  template <class T>
+  [[gnu::always_inline]] Mat<4, T> tangent(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
+    const PlaneStep<T> step = flow(F, state, dt);
+    return tangent_of(step.trial, respond(step.trial, bulk, step.dW, step.ddW));
+  }
+  /// The state after a step that ends at F, and what the step dissipated.
   template <int Dim, class T>
-  Mat<Dim * Dim, T> tangent(const Mat<Dim, T>& F, const State<T>& state) const {
-    const Mat<3, T>& G = state.inverse_plastic;
-    const Mat<9, T> A_e = tangent_of(response(F, state).psi);
+  struct Advanced {
+    State<Dim, T> state;
+    T dissipated;  ///< [J/m^3]
+  };
+  template <class T>
+  Advanced<2, T> advance(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
+    const PlaneStep<T> step = flow(F, state, dt);
+    const Vec<3, T> G = flowed(step.trial, step.share);
+    const auto flows = step.flow.increment > T(0.0);
+    return {{select(flows, G[0], state[0]), select(flows, G[1], state[1]), select(flows, G[2], state[2]),
+             state[3] + step.flow.increment},
+            step.flow.dissipated};
+  }
+  /// Elastic energy [J/m^3] of a point at F with this state, as it is.
+  template <int Dim, class T>
+  T stored(const Mat<Dim, T>& F, const State<Dim, T>& state) const {
+    const auto step = trial(F, state);
+    return 0.5 * bulk * step.log_J * step.log_J + mu * step.square();
+  }
+  /// Kirchhoff's stress across the plane [Pa].
+  template <class T>
+  T stress_across(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
+    const PlaneStep<T> step = flow(F, state, dt);
+    return bulk * step.trial.log_J - 4.0 * step.dW * step.trial.d;
+  }
+
+  /// In space: by the principal stretches of F_e.
+  template <class T>
+  Mat<3, T> stress(const Mat<3, T>& F, const State<3, T>& state, double dt) const {
+    return stress_of(flow(F, state, dt).response) * transpose(inverse_plastic(state));  // dpsi/dF_e F_p^-T
+  }
+  template <class T>
+  Mat<9, T> tangent(const Mat<3, T>& F, const State<3, T>& state, double dt) const {
+    const Mat<3, T> G = inverse_plastic(state);
+    const Mat<9, T> A_e = tangent_of(flow(F, state, dt).response);
     // A_iJkL = (A_e)_iMkN G_JM G_LN, one index after the other.
-    Mat<9, T> half;
+    Mat<9, T> half, A;
     for (int row = 0; row < 9; ++row)
       for (int k = 0; k < 3; ++k)
         for (int l = 0; l < 3; ++l)
           for (int n = 0; n < 3; ++n) half(row, 3 * k + l) += A_e(row, 3 * k + n) * G(l, n);
-    Mat<Dim * Dim, T> A;
-    for (int i = 0; i < Dim; ++i)
-      for (int j = 0; j < Dim; ++j)
-        for (int column = 0; column < Dim * Dim; ++column)
-          for (int m = 0; m < 3; ++m)
-            A(i * Dim + j, column) += half(3 * i + m, 3 * (column / Dim) + column % Dim) * G(j, m);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        for (int column = 0; column < 9; ++column)
+          for (int m = 0; m < 3; ++m) A(3 * i + j, column) += half(3 * i + m, column) * G(j, m);
     return A;
   }
-  /// The state after a step that ends at F.
-  template <int Dim, class T>
-  State<T> advance(const Mat<Dim, T>& F, const State<T>& state) const {
-    // F_p^-1 <- F_p^-1 exp(-gamma sum_a n_a v_a (x) v_a)
-    const auto [psi, gamma, n] = response(F, state);
+  template <class T>
+  Advanced<3, T> advance(const Mat<3, T>& F, const State<3, T>& state, double dt) const {
+    // F_p^-1 <- F_p^-1 exp(-gamma sum_a n_a v_a (x) v_a), gamma n = (1 - share) e'
+    const SpaceStep<T> step = flow(F, state, dt);
     Mat<3, T> shrink;
-    for (int a = 0; a < 3; ++a) shrink(a, a) = exp(-gamma * n[a]);
-    const Mat<3, T>& v = psi.frame.v;
-    return {state.inverse_plastic * (v * shrink * transpose(v)),
-            state.plastic_strain + root_two_thirds * gamma};
+    for (int a = 0; a < 3; ++a) shrink(a, a) = exp((step.share - 1.0) * step.trial.deviator[a]);
+    const Mat<3, T>& v = step.response.frame.v;
+    const Mat<3, T> G = inverse_plastic(state) * (v * shrink * transpose(v));
+    Advanced<3, T> after{state, step.flow.dissipated};
+    std::copy(G.c.begin(), G.c.end(), after.state.begin());
+    after.state.back() = state.back() + step.flow.increment;
+    return after;
   }
+
   /// Speed of pressure waves [m/s] in the unstrained material.
-  double wave_speed(double density) const { return Lame{lambda, mu}.wave_speed(density); }
+  double wave_speed(double density) const { return Lame{bulk - 2.0 / 3.0 * mu, mu}.wave_speed(density); }
+
+  /// For mean dilatation: a cell that flows would lock if its points kept more of the bulk modulus than some
+  /// yield stresses, and with less than that they would wander (docs/decisions/0038). Never more than what
+  /// Hencky's law keeps.
+  VonMises deviatoric() const { return {local_bulk(), mu, rule}; }
+  LogVolume volume() const { return {bulk - local_bulk()}; }
+  Determinant dilatation() const { return {}; }
 
  private:
-  static constexpr double root_two_thirds = 0.81649658092772603;
+  static constexpr double root_two_thirds = 0.81649658092772603, root_six = 2.44948974278317810;
+  static constexpr double local_yields = 5;
+
+  double local_bulk() const {
+    return std::min(bulk, std::min(local_yields * rule.yield_stress, 2.0 / 3.0 * mu));
+  }
 
   template <class T>
-  struct Return {
-    PrincipalResponse<T> psi;  ///< as a function of the stretches of the trial F_e = F F_p^-1
-    T gamma;                   ///< plastic strain of the step |Delta e_p|
-    Vec<3, T> n;               ///< its direction
+  struct PlaneStep {
+    PlaneTrial<T> trial;
+    FlowRule::Flow<T> flow;
+    T share;    ///< e' = share e'_trial
+    T dW, ddW;  ///< of the potential, by u = |e'_trial|^2 [Pa]
+    T stored;
+  };
+  /// In space, of the trial.
+  template <class T>
+  struct SpaceTrial {
+    PrincipalFrame<T> frame;
+    Vec<3, T> e, deviator;
+    T log_J;
+    T square() const { return dot(deviator, deviator); }
+  };
+  template <class T>
+  struct SpaceStep {
+    SpaceTrial<T> trial;
+    FlowRule::Flow<T> flow;
+    T share;
+    T stored;
+    PrincipalResponse<T> response;
   };
 
   template <class T>
-  static const Mat<3, T>& in_space(const Mat<3, T>& F) {
-    return F;
+  static Mat<3, T> inverse_plastic(const State<3, T>& state) {
+    Mat<3, T> G;
+    std::copy(state.begin(), state.begin() + 9, G.c.begin());
+    return G;
   }
   template <class T>
-  static Mat<3, T> in_space(const Mat<2, T>& F) {
-    return {{F(0, 0), F(0, 1), T(0.0), F(1, 0), F(1, 1), T(0.0), T(0.0), T(0.0), T(1.0)}};
+  [[gnu::always_inline]] static PlaneTrial<T> trial(const Mat<2, T>& F, const State<2, T>& state) {
+    return plane_trial(F, Vec<3, T>{{state[0], state[1], state[2]}});
+  }
+  template <class T>
+  static SpaceTrial<T> trial(const Mat<3, T>& F, const State<3, T>& state) {
+    SpaceTrial<T> trial{principal_frame(F * inverse_plastic(state)), {}, {}, {}};
+    for (int a = 0; a < 3; ++a) trial.e[a] = log(trial.frame.stretch[a]);
+    trial.log_J = trial.e[0] + trial.e[1] + trial.e[2];
+    for (int a = 0; a < 3; ++a) trial.deviator[a] = trial.e[a] - (1.0 / 3.0) * trial.log_J;
+    return trial;
   }
 
-  /// Return from the trial strain e along dev e: |dev tau| = 2 mu (|dev e| - gamma) = sqrt(2/3) (yield +
-  /// ...).
-  template <int Dim, class T>
-  Return<T> response(const Mat<Dim, T>& F, const State<T>& state) const {
-    Return<T> step;
-    step.psi.frame = principal_frame(in_space(F) * state.inverse_plastic);
-    const Vec<3, T>& s = step.psi.frame.stretch;
-    const Vec<3, T> e{{log(s[0]), log(s[1]), log(s[2])}};
-    const T log_J = e[0] + e[1] + e[2], mean = (1.0 / 3.0) * log_J;
-    const Vec<3, T> deviator{{e[0] - mean, e[1] - mean, e[2] - mean}};
-    const T size = max(sqrt(dot(deviator, deviator)), T(1e-300));  // not zero: it divides
-    const T yield = yield_stress + hardening * state.plastic_strain;
-    const double stiffness = 2.0 * mu + 2.0 / 3.0 * hardening;
-    step.n = (1.0 / size) * deviator;
-    step.gamma = max((2.0 * mu * size - root_two_thirds * yield) * (1.0 / stiffness), T(0.0));
-
-    const T left = size - step.gamma, alpha = root_two_thirds * step.gamma;
-    const double bulk = lambda + 2.0 / 3.0 * mu;
-    step.psi.energy =
-        mu * left * left + 0.5 * bulk * log_J * log_J + alpha * (yield + 0.5 * hardening * alpha);
-    // dtau/de = bulk 1 (x) 1 + 2 mu (left/size dev + (gamma/size - dgamma/de) n (x) n)
-    const T share = left / size;
-    const T turn = 1.0 - share - select(step.gamma > T(0.0), T(2.0 * mu / stiffness), T(0.0));
+  /// share, flow and energy of a trial, in the plane or in space.
+  template <class Step, class T>
+  [[gnu::always_inline]] void flow_back(Step& step, const T& alpha, double dt) const {
+    const T u = step.trial.square(), size = max(sqrt(u), T(1e-150));  // not zero: it divides
+    step.flow = rule.flow(root_six * mu * size, alpha, mu, dt);
+    step.share = 1.0 - step.flow.increment / (root_two_thirds * size);
+    step.stored = 0.5 * bulk * step.trial.log_J * step.trial.log_J + mu * step.share * step.share * u;
+  }
+  template <class T>
+  [[gnu::always_inline]] PlaneStep<T> flow(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
+    PlaneStep<T> step{.trial = trial(F, state), .flow = {}, .share = {}, .dW = {}, .ddW = {}, .stored = {}};
+    flow_back(step, state[3], dt);
+    // W' = mu share; W'' = mu dshare/du
+    const T u = max(step.trial.square(), T(1e-300));
+    step.dW = mu * step.share;
+    step.ddW = (0.5 * mu) * (1.0 - step.share - 3.0 * mu * step.flow.slope) / u;
+    return step;
+  }
+  template <class T>
+  SpaceStep<T> flow(const Mat<3, T>& F, const State<3, T>& state, double dt) const {
+    SpaceStep<T> step{.trial = trial(F, state), .flow = {}, .share = {}, .stored = {}, .response = {}};
+    flow_back(step, state[9], dt);
+    const SpaceTrial<T>& trial = step.trial;
+    // dtau/de = bulk 1 (x) 1 + 2 mu (share dev + turn n (x) n), n = e'/|e'|
+    const T turn = 1.0 - step.share - 3.0 * mu * step.flow.slope;
+    const T inverse = 1.0 / max(trial.square(), T(1e-300));
     Mat<3, T> D;
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)
-        D(a, b) = bulk + 2.0 * mu * (share * ((a == b) - 1.0 / 3.0) + turn * step.n[a] * step.n[b]);
-    differentiate(step.psi, e, mu * share, bulk * log_J - 2.0 * mu * share * mean, D);
+        D(a, b) = bulk + 2.0 * mu *
+                             (step.share * ((a == b) - 1.0 / 3.0) +
+                              turn * inverse * trial.deviator[a] * trial.deviator[b]);
+    step.response.frame = trial.frame;
+    differentiate(step.response, trial.e, mu * step.share, (bulk - 2.0 / 3.0 * mu * step.share) * trial.log_J,
+                  D);
     return step;
   }
 };
 
-/// From Young's modulus E [Pa], Poisson's ratio nu, yield stress [Pa] and hardening modulus [Pa]; UsageError
-/// as lame(E, nu), and unless yield_stress > 0 and hardening >= 0.
-inline VonMises von_mises(double E, double nu, double yield_stress, double hardening) {
+/// From Young's modulus E [Pa], Poisson's ratio nu and the rule; UsageError as lame(E, nu) and flow_rule.
+inline VonMises von_mises(double E, double nu, const FlowRule& rule) {
   const Lame elastic = lame(E, nu);
-  require(yield_stress > 0, "the yield stress must be > 0 Pa, got {}", yield_stress);
-  require(hardening >= 0, "the hardening modulus must be >= 0 Pa, got {}", hardening);
-  return {elastic.lambda, elastic.mu, yield_stress, hardening};
+  return {elastic.lambda + 2.0 / 3.0 * elastic.mu, elastic.mu, flow_rule(rule)};
 }
 
 }  // namespace softgrain

@@ -17,7 +17,7 @@ Energies energies_of(const WorkBudget& work, double kinetic, double elastic) {
 
 Numbers elastic_numbers(const WorkBudget& work, double elastic) {
   return {{"elastic_energy", elastic},
-          {"dissipation_integration", work.internal + work.inertia - elastic},
+          {"dissipation_integration", work.internal + work.inertia - elastic - work.flow},
           {"dissipation_damping", work.damping}};
 }
 

@@ -12,7 +12,8 @@ namespace softgrain {
 struct WorkBudget {
   double walls = 0;     ///< by the walls on the grains
   double gravity = 0;   ///< sum of m g . dx
-  double internal = 0;  ///< sum of f_int . dx: the elastic energy, and what integration loses of it
+  double internal = 0;  ///< sum of f_int . dx: the elastic energy, `flow`, and what integration loses
+  double flow = 0;      ///< of `internal`: dissipated by flow of the material
   double contacts = 0;  ///< -sum of p . u: taken by contacts
   double friction = 0;  ///< of `contacts`: by sliding
   double inertia = 0;   ///< backward Euler's sum of m (dv)^2/2
@@ -24,7 +25,7 @@ Energies energies_of(const WorkBudget& work, double kinetic, double elastic);
 /// The columns that split the dissipation of elastic grains, and their energy.
 Numbers elastic_numbers(const WorkBudget& work, double elastic);
 
-/// Declares what work was spent on.
+/// Declares what work was spent on, but `flow`, which only some materials do.
 void visit_work(WorkBudget& work, StateVisitor& visit);
 
 }  // namespace softgrain

@@ -9,7 +9,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
-#include "softgrain/soft/equilibrium.hpp"
+#include "softgrain/soft/history.hpp"
 
 namespace softgrain {
 namespace {
@@ -111,6 +111,13 @@ Numbers ElasticGrains<Dynamics>::numbers(const Box<2>& box) const {
   numbers.emplace_back("least_J", least_J(grains));
   numbers.emplace_back("iterations", sums_.steps > 0 ? sums_.iterations / sums_.steps : 0);
   numbers.emplace_back("rejected_steps", sums_.rejected);
+  if (has_history(grains.law)) {
+    const PlasticStrain strain = plastic_strain(grains);
+    numbers.emplace_back("dissipation_plastic", dynamics_.work.flow);
+    numbers.emplace_back("plastic_strain", strain.mean);
+    numbers.emplace_back("plastic_strain_max", strain.largest);
+    numbers.emplace_back("yielding", dynamics_.last_flow.share);
+  }
   if (!box.closed()) {
     double start_area = 0;
     for (int g = 0; g < grains.size(); ++g) start_area += grains.mass(g) / grains.density;
@@ -162,6 +169,12 @@ void ElasticGrains<Dynamics>::visit(StateVisitor& visit) {
   visit({"impulse_time", "s", Owner::run, Role::start, "the sub-step over which impulses acted"},
         dynamics_.impulse_time);
   visit_work(dynamics_.work, visit);
+  if (has_history(dynamics_.grains.law)) {
+    visit({"work_of_flow", "J/m", Owner::run, Role::sum, "dissipated by flow of the material"},
+          dynamics_.work.flow);
+    visit({"yielding", "", Owner::run, Role::sum, "share of the area that flowed in the last step"},
+          dynamics_.last_flow.share);
+  }
   visit({"steps_of_row", "", Owner::run, Role::sum, "steps since the last row"}, sums_.steps);
   visit({"iterations_of_row", "", Owner::run, Role::sum, "iterations since the last row"}, sums_.iterations);
   visit({"rejected_steps", "", Owner::run, Role::sum, "sub-steps taken back"}, sums_.rejected);

@@ -3,66 +3,14 @@
 #include <limits>
 #include <variant>
 
-#include "softgrain/material/elastic_law.hpp"
-#include "softgrain/math/tensor.hpp"
 #include "softgrain/soft/cell_in_lanes.hpp"
+#include "softgrain/soft/law_at_points.hpp"
 
 // flatten: without it g++ leaves sums of vectors as calls in the innermost loops, 2.7 times the time of a
 // force
 
 namespace softgrain {
 namespace {
-
-using WideMat = Mat<2, Wide>;
-
-/// Q of a batch: by which each grain was turned when it was placed.
-WideMat placed_rotation(const GrainBatch& batch) {
-  const auto& [c, s] = batch.placed_along.c;
-  return {{c, -s, s, c}};
-}
-
-/// The four points of a cell in the eight grains: F of each. A law that is not objective needs F = 1 in the
-/// grain as it was placed: it sees Q^T F, which to an isotropic law is as good as F Q^T, and its forces are
-/// turned back by Q.
-struct CellState {
-  CellState(const GrainBatch& batch, int cell_index, bool turned_back)
-      : cell(batch.topology->grid.cell[cell_index]),
-        points(&batch.topology->points[4 * cell_index]),
-        volume(1 / batch.topology->cell_shapes[cell_index].inverse_volume) {
-    // F = sum_a x_a (x) dN_a/dX = sum_(a > 0) (x_a - x_0) (x) dN_a/dX, as sum_a N_a = 1
-    const Wide inverse_radius = 1.0 / batch.radius;
-    std::array<Vec<2, Wide>, 4> edge;
-    for (int a = 1; a < 4; ++a)
-      edge[a] = inverse_radius * (batch.position[cell[a]] - batch.position[cell[0]]);
-    if (turned_back)
-      for (int a = 1; a < 4; ++a) edge[a] = transpose(placed_rotation(batch)) * edge[a];
-    for (int p = 0; p < 4; ++p) {
-      const auto& g = points[p].gradient;
-      for (int i = 0; i < 2; ++i)
-        for (int j = 0; j < 2; ++j)
-          F[p](i, j) = edge[1][i] * g[1][j] + edge[2][i] * g[2][j] + edge[3][i] * g[3][j];
-    }
-  }
-  /// Mean of theta over the cell, weighted by volume.
-  template <class Dilatation>
-  Wide mean(const Dilatation& theta) const {
-    Wide sum = 0.0;
-    for (int p = 0; p < 4; ++p) sum += points[p].volume * theta.value(F[p]);
-    return sum * Wide(1 / volume);
-  }
-
-  const std::array<int, 4>& cell;
-  const MaterialPoint* points;
-  double volume;  ///< [R^2]
-  std::array<WideMat, 4> F;
-};
-
-/// visit(cell, state) for all cells of a batch.
-template <class Law, class Visit>
-void for_each_cell(const Law&, const GrainBatch& batch, Visit&& visit) {
-  for (int cell = 0; cell < static_cast<int>(batch.topology->grid.cell.size()); ++cell)
-    visit(cell, CellState(batch, cell, !Law::objective));
-}
 
 /// The lanes in which some J was not positive.
 class InvertedLanes {
@@ -112,12 +60,13 @@ class CellForce {
 
 /// P = dpsi_dev/dF + U'(mean theta) dtheta/dF at each point.
 template <class Law>
-[[gnu::flatten]] CellForce cell_force(const Law& law, const CellState& state, InvertedLanes& inverted) {
-  const auto theta = law.dilatation();
-  const Wide pressure = law.volume().derivative(state.mean(theta));
+[[gnu::flatten]] CellForce cell_force(const LawAtPoints<Law>& at, const CellState& state,
+                                      InvertedLanes& inverted) {
+  const auto theta = at.law.dilatation();
+  const Wide pressure = at.law.volume().derivative(state.mean(theta));
   const auto stress = [&](int p) {
     inverted.note(determinant(state.F[p]));
-    return law.deviatoric().stress(state.F[p]) + pressure * theta.gradient(state.F[p]);
+    return at.stress(state, p) + pressure * theta.gradient(state.F[p]);
   };
   CellForce force(stress(0), state.points[0]);
   for (int p = 1; p < 4; ++p) force.add(stress(p), state.points[p]);
@@ -125,10 +74,11 @@ template <class Law>
 }
 
 template <class Law>
-unsigned add_forces(const Law& law, const GrainBatch& batch, WideVectors& force) {
+unsigned add_forces(const Law& law, const GrainBatch& batch, double dt, WideVectors& force) {
   InvertedLanes inverted;
-  for_each_cell(law, batch, [&](int, const CellState& state) {
-    CellForce of_cell = cell_force(law, state, inverted);
+  const LawAtPoints<Law> at(law, batch, dt);
+  for_each_cell(law, batch, [&](const CellState& state) {
+    CellForce of_cell = cell_force(at, state, inverted);
     if (!Law::objective) of_cell.turn(placed_rotation(batch));
     of_cell.add_to(force, state.cell, batch.radius);
   });
@@ -136,7 +86,7 @@ unsigned add_forces(const Law& law, const GrainBatch& batch, WideVectors& force)
 }
 
 template <HasCofactorFactors Law>
-[[gnu::flatten]] unsigned add_forces(const Law& law, const GrainBatch& batch, WideVectors& force) {
+[[gnu::flatten]] unsigned add_forces(const Law& law, const GrainBatch& batch, double, WideVectors& force) {
   const Topology& topology = *batch.topology;
   const Wide inverse_square_radius = 1.0 / (batch.radius * batch.radius);
   InvertedLanes inverted;
@@ -183,14 +133,14 @@ void add_bulk_stiffness(const Wide& second_derivative, const std::array<Vec<2, W
 }
 
 template <class Law>
-[[gnu::flatten]] void cell_stiffness(const Law& law, const CellState& state, CellStiffness& K) {
-  const auto theta = law.dilatation();
+[[gnu::flatten]] void cell_stiffness(const LawAtPoints<Law>& at, const CellState& state, CellStiffness& K) {
+  const auto theta = at.law.dilatation();
   const Wide mean = state.mean(theta);
-  const Wide pressure = law.volume().derivative(mean);
+  const Wide pressure = at.law.volume().derivative(mean);
   std::array<Vec<2, Wide>, 4> dtheta{};  // of sum_p V_p theta_p
   for (int p = 0; p < 4; ++p) {
     const MaterialPoint& point = state.points[p];
-    Mat<4, Wide> A = law.deviatoric().tangent(state.F[p]);
+    Mat<4, Wide> A = at.tangent(state, p);
     theta.add_second_derivative(A, pressure, state.F[p]);
     add_point_stiffness(A, point, K);
     const WideMat gradient = theta.gradient(state.F[p]);
@@ -199,7 +149,7 @@ template <class Law>
         dtheta[a][i] +=
             point.volume * (gradient(i, 0) * point.gradient[a][0] + gradient(i, 1) * point.gradient[a][1]);
   }
-  add_bulk_stiffness(law.volume().second_derivative(mean) * Wide(1 / state.volume), dtheta, K);
+  add_bulk_stiffness(at.law.volume().second_derivative(mean) * Wide(1 / state.volume), dtheta, K);
 }
 
 /// K_ab <- Q K_ab Q^T
@@ -208,51 +158,36 @@ void turn(const WideMat& Q, CellStiffness& K) {
 }
 
 template <class Law>
-[[gnu::flatten]] Wide cell_energy(const Law& law, const CellState& state) {
-  Wide sum = state.volume * law.volume().energy(state.mean(law.dilatation()));
-  for (int p = 0; p < 4; ++p) sum += state.points[p].volume * law.deviatoric().energy(state.F[p]);
+[[gnu::flatten]] Wide cell_energy(const LawAtPoints<Law>& at, const CellState& state) {
+  Wide sum = state.volume * at.law.volume().energy(state.mean(at.law.dilatation()));
+  for (int p = 0; p < 4; ++p) sum += state.points[p].volume * at.stored(state, p);
   return sum;
-}
-
-/// Points of one lane.
-template <class Law>
-void add_point_states(const Law& law, const CellState& state, const Mat<2>& Q, int lane,
-                      std::vector<PointState>& states) {
-  const Wide pressure = law.volume().derivative(state.mean(law.dilatation()));
-  for (int p = 0; p < 4; ++p) {
-    Mat<2> F;
-    for (std::size_t k = 0; k < 4; ++k) F.c[k] = state.F[p].c[k][lane];
-    PointState point{.F = (Law::objective ? F : Q * F) * transpose(Q), .stress = {}, .pressure = 0};
-    const Mat<2> P = law.deviatoric().stress(point.F) + pressure[lane] * law.dilatation().gradient(point.F);
-    point.stress = (1 / determinant(point.F)) * (P * transpose(point.F));
-    point.pressure = -trace(point.stress) / 2;
-    states.push_back(point);
-  }
 }
 
 }  // namespace
 
-unsigned internal_force(const SoftGrains& grains, const GrainBatch& batch, WideVectors& force) {
+unsigned internal_force(const SoftGrains& grains, const GrainBatch& batch, WideVectors& force, double dt) {
   force.assign(batch.position.size(), {});
-  return std::visit([&](const auto& law) { return add_forces(law, batch, force); }, grains.law);
+  return std::visit([&](const auto& law) { return add_forces(law, batch, dt, force); }, grains.law);
 }
 
-void for_each_cell_stiffness(const SoftGrains& grains, const GrainBatch& batch,
+void for_each_cell_stiffness(const SoftGrains& grains, const GrainBatch& batch, double dt,
                              const std::function<void(int cell, const CellStiffness& K)>& visit) {
   std::visit(
       [&]<class Law>(const Law& law) {
-        for_each_cell(law, batch, [&](int cell, const CellState& state) {
+        const LawAtPoints<Law> at(law, batch, dt);
+        for_each_cell(law, batch, [&](const CellState& state) {
           CellStiffness K{};
-          cell_stiffness(law, state, K);
+          cell_stiffness(at, state, K);
           if (!Law::objective) turn(placed_rotation(batch), K);
-          visit(cell, K);
+          visit(state.index, K);
         });
       },
       grains.law);
 }
 
-void add_stiffness(const SoftGrains& grains, const GrainBatch& batch, BatchedCholesky& matrix) {
-  for_each_cell_stiffness(grains, batch, [&](int cell, const CellStiffness& K) {
+void add_stiffness(const SoftGrains& grains, const GrainBatch& batch, BatchedCholesky& matrix, double dt) {
+  for_each_cell_stiffness(grains, batch, dt, [&](int cell, const CellStiffness& K) {
     for (int pair = 0; pair < 10; ++pair) {
       const CellBlock& to = batch.topology->cell_blocks[10 * cell + pair];
       const auto& k = K[pair];
@@ -264,8 +199,9 @@ void add_stiffness(const SoftGrains& grains, const GrainBatch& batch, BatchedCho
 Wide elastic_energy(const SoftGrains& grains, const GrainBatch& batch) {
   Wide sum = 0.0;
   std::visit(
-      [&](const auto& law) {
-        for_each_cell(law, batch, [&](int, const CellState& state) { sum += cell_energy(law, state); });
+      [&]<class Law>(const Law& law) {
+        const LawAtPoints<Law> at(law, batch, 0);
+        for_each_cell(law, batch, [&](const CellState& state) { sum += cell_energy(at, state); });
       },
       grains.law);
   return sum * (batch.radius * batch.radius);
@@ -278,22 +214,6 @@ Wide least_J(const GrainBatch& batch) {
     for (const WideMat& F : state.F) least = min(determinant(F), least);
   }
   return least;
-}
-
-std::vector<PointState> point_states(const SoftGrains& grains, int grain) {
-  const auto place = grains.batch_of(grain);
-  const GrainBatch* batch = place.first;  // not a structured binding: clang 14 keeps those out of lambdas
-  const int lane = place.second;
-  Mat<2> Q;
-  for (std::size_t k = 0; k < 4; ++k) Q.c[k] = placed_rotation(*batch).c[k][lane];
-  std::vector<PointState> states;
-  std::visit(
-      [&](const auto& law) {
-        for_each_cell(law, *batch,
-                      [&](int, const CellState& state) { add_point_states(law, state, Q, lane, states); });
-      },
-      grains.law);
-  return states;
 }
 
 }  // namespace softgrain

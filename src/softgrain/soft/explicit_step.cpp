@@ -55,6 +55,7 @@ ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
        {&outline_velocity_, &outline_velocity_start_, &outline_.start, &outline_.position})
     of_vertices->resize(grains.outline_size());
   batch_step_.resize(grains.batches.size());
+  flows_ = has_history(grains.law);
 }
 
 SoftStepReport ExplicitDynamics::step(double dt) {
@@ -118,6 +119,7 @@ void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
   const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction, solver);
   impulse_time = dt;
   drift_outline(dt);
+  if (flows_) add_flow();
   add_contact_work(dt);
 
   ++report.iterations;
@@ -159,8 +161,9 @@ void ExplicitDynamics::kick(double dt) {
     if (options.damping_share > 0)
       for (std::size_t i = 0; i < batch.position.size(); ++i)
         batch.position[i] += Wide(options.damping_share * dt) * batch.velocity[i];
-    inverted[b] = batch.grain_in(internal_force(grains, batch, force));
+    inverted[b] = batch.grain_in(internal_force(grains, batch, force, dt));
     if (inverted[b] >= 0) return;
+    batch_step_[b].flow = advance_history(grains, batch, dt);  // where the force was taken
     kick_batch(dt, force, batch, batch_step_[b]);
     grains.for_each_vertex(
         batch, [&](int v, int i, int lane) { outline_velocity_[v] = lane_of(batch.velocity[i], lane); });
@@ -225,6 +228,13 @@ void ExplicitDynamics::drift_outline(double dt) {
       work.gravity += batch_step_[b].gravity[lane];
       work.damping += batch_step_[b].damping[lane];
     }
+}
+
+void ExplicitDynamics::add_flow() {
+  std::vector<FlowOfStep> flows;
+  for (const BatchStep& step : batch_step_) flows.push_back(step.flow);
+  last_flow = sum_of(grains, flows);
+  work.flow += last_flow.dissipated;
 }
 
 /// Of the contacts that carry impulse, over the smallest radius.

@@ -5,6 +5,7 @@
 #include "softgrain/geometry/wall_motion.hpp"
 #include "softgrain/model/soft_step_report.hpp"
 #include "softgrain/model/work_budget.hpp"
+#include "softgrain/soft/history.hpp"
 #include "softgrain/soft/lumped_contacts.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
 #include "softgrain/soft/soft_grains.hpp"
@@ -59,6 +60,7 @@ class ExplicitDynamics {
   std::vector<Vec<2>> impulse;
   double impulse_time = 0;  ///< the step over which they acted [s]
   WorkBudget work;          ///< since the start; there is no `inertia`
+  FlowOfGrains last_flow;   ///< of the last sub-step
   StableStep stable;
 
  private:
@@ -66,6 +68,7 @@ class ExplicitDynamics {
   struct BatchStep {
     WideVectors force, velocity;
     Wide internal = 0.0, gravity = 0.0, damping = 0.0;
+    FlowOfStep flow;
 
     void add_work(const Vec<2, Wide>& internal_force, const Vec<2, Wide>& weight, const Vec<2, Wide>& moved) {
       internal += dot(internal_force, moved);
@@ -81,6 +84,7 @@ class ExplicitDynamics {
   void kick(double dt);
   void kick_batch(double dt, const WideVectors& force, GrainBatch& batch, BatchStep& step) const;
   void drift_outline(double dt);
+  void add_flow();
   void add_contact_work(double dt);
   void add_penetration(SoftStepReport& report) const;
 
@@ -88,6 +92,7 @@ class ExplicitDynamics {
   OutlineNeighbours neighbours_;
   OutlineState outline_;
   std::vector<Vec<2>> outline_velocity_, outline_velocity_start_;
+  bool flows_ = false;                // the law has a history
   std::vector<double> inverse_mass_;  // (outline vertices)
   std::vector<Vec<2>> wall_impulse_;
   LumpedContacts::Scratch lumped_scratch_;

@@ -49,6 +49,7 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
     mean_radius_ += grains.radius(g) / grains.size();
     smallest_radius_ = std::min(smallest_radius_, grains.radius(g));
   }
+  flows_ = has_history(grains.law);
   explicit_step_ = stable_time_step(grains, 1);
   const double wave_speed =
       std::visit([&](const auto& law) { return law.wave_speed(grains.density); }, grains.law);
@@ -110,10 +111,11 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
   Failure failure = factor(dt, proximal, report);
   if (failure == Failure::indefinite_matrix) failure = factor(dt, 4 * proximal, report);
   Imbalance left;
+  const int renewal = flows_ ? 1 : refactor_every;  // docs/decisions/0038
   for (int iteration = 1; failure == Failure::none; ++iteration) {
     if ((failure = residual(dt)) != Failure::none) break;
     const bool contacts_solved = solve_contacts(dt, report);
-    left = correct(iteration == 1, (iteration - 1) % refactor_every != 0);
+    left = correct(iteration == 1, (iteration - 1) % renewal != 0);
     ++report.iterations;
     if (!(left.correction < largest_correction))
       return std::isfinite(left.correction) ? Failure::too_far : Failure::not_finite;
@@ -123,7 +125,7 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
     } else if (iteration == most) {
       failure = Failure::no_convergence;
     }
-    if (failure == Failure::none && iteration % refactor_every == 0) failure = factor(dt, proximal, report);
+    if (failure == Failure::none && iteration % renewal == 0) failure = factor(dt, proximal, report);
   }
   if (failure == Failure::none) failure = finish(dt, report);
   if (failure == Failure::none) report.residual = std::max(report.residual, left.residual);
@@ -156,7 +158,7 @@ ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, S
     const GrainBatch& batch = grains.batches[b];
     BatchedCholesky& A = matrix_[b];
     A.clear(precision);
-    add_stiffness(grains, batch, A);
+    add_stiffness(grains, batch, A, dt);
     WideVectors diagonal(batch.position.size());
     grains.scatter_outline(proximal_, batch, diagonal);
     for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
@@ -177,7 +179,7 @@ ImplicitDynamics::Failure ImplicitDynamics::residual(double dt) {
   std::vector<int> failed(batches(), -1);
   parallel_for(batches(), [&](int b) {
     const GrainBatch& batch = grains.batches[b];
-    failed[b] = batch.grain_in(internal_force(grains, batch, force_[b]));
+    failed[b] = batch.grain_in(internal_force(grains, batch, force_[b], dt));
     if (failed[b] >= 0) return;
     WideVectors& r = force_[b];
     for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
@@ -247,12 +249,21 @@ double ImplicitDynamics::find_depth() {
   return depth;
 }
 
+/// The history of the points after a step that nothing takes back any more.
+void ImplicitDynamics::flow(double dt) {
+  if (!flows_) return;
+  std::vector<FlowOfStep> flows(grains.batches.size());
+  parallel_for(batches(), [&](int b) { flows[b] = advance_history(grains, grains.batches[b], dt); });
+  last_flow = sum_of(grains, flows);
+  work.flow += last_flow.dissipated;
+}
+
 /// v = (x - x_n)/dt; the walls' impulses; the work done; the contacts as they are at the end.
 ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& report) {
   std::vector<int> failed(batches(), -1);
   parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];
-    failed[b] = batch.grain_in(internal_force(grains, batch, force_[b]));
+    failed[b] = batch.grain_in(internal_force(grains, batch, force_[b], dt));
     for (std::size_t i = 0; i < batch.position.size(); ++i)
       batch.velocity[i] = Wide(1 / dt) * (batch.position[i] - start_[b][i]);
   });
@@ -260,6 +271,7 @@ ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& re
   failed_grain_ = grains.runaway_grain(dt);
   if (failed_grain_ >= 0) return Failure::too_far;
   if (caught) catch_problem(dt);
+  flow(dt);
   if (step_of_matrix(dt) < dt) hold_touching();
   balance_momentum(dt);
   add_work();

@@ -10,6 +10,7 @@
 #include "softgrain/model/soft_step_report.hpp"
 #include "softgrain/model/work_budget.hpp"
 #include "softgrain/soft/elastic_contacts.hpp"
+#include "softgrain/soft/history.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
 #include "softgrain/soft/soft_grains.hpp"
 
@@ -76,7 +77,8 @@ class ImplicitDynamics {
   double sub_step = 0;                   ///< the longest to try next [s]; 0: the whole step
   /// Sub-steps of that length that succeeded, and how many shall before twice the length is tried
   int successes = 0, patience = 1;
-  WorkBudget work;  ///< since the start
+  WorkBudget work;         ///< since the start
+  FlowOfGrains last_flow;  ///< of the last (sub-)step
   /// Unless empty: becomes the last contact problem of every step.
   std::optional<SolvedContactProblem> caught;
 
@@ -136,6 +138,7 @@ class ImplicitDynamics {
   double least_contact_force() const;          // of a packing that carries something [N/m]
   double find_depth();
   void catch_problem(double dt);
+  void flow(double dt);
   Failure finish(double dt, SoftStepReport& report);
   void balance_momentum(double dt);
   /// v_n and what damping changes of it, of a node of a batch.
@@ -149,6 +152,7 @@ class ImplicitDynamics {
   std::vector<double> friction_of_contacts() const;
 
   double mean_radius_ = 0, smallest_radius_ = 0;
+  bool flows_ = false;        // the law has a history
   double explicit_step_ = 0;  // h/c [s]
   double wave_time_ = 0;      // R/c of the smallest grain [s]
   OutlineNeighbours neighbours_;

@@ -4,6 +4,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
+#include "softgrain/soft/history.hpp"
 
 namespace softgrain {
 
@@ -30,6 +31,7 @@ SoftGrains::SoftGrains(std::vector<GrainPlacement> grains, AnyLaw material, doub
       batches[b].grain.fill(-1);
       batches[b].position.resize(placed.topology->grid.nodes());
       batches[b].velocity.resize(placed.topology->grid.nodes());
+      batches[b].history = undeformed_history(law, *placed.topology);
     }
     GrainBatch& batch = batches[b];
     int lane = 0;

@@ -23,6 +23,8 @@ struct GrainBatch {
   Vec<2, Wide> placed_along{{1.0, 0.0}};  ///< (cos, sin) of the angle of placement
   WideVectors position;                   ///< (nodes) x_i [m]
   WideVectors velocity;                   ///< (nodes) v_i [m/s]
+  /// (points) what each remembers of its flow, as the law's State has it; empty where the law has none
+  std::vector<Wide> history = {};
   /// First grain among the lanes whose bits are set, -1 if none holds a grain.
   int grain_in(unsigned lanes) const {
     for (int lane = 0; lane < Wide::size; ++lane)

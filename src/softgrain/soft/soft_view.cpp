@@ -10,6 +10,8 @@
 #include "softgrain/math/tensor.hpp"
 #include "softgrain/soft/elastic_contacts.hpp"
 #include "softgrain/soft/equilibrium.hpp"
+#include "softgrain/soft/history.hpp"
+#include "softgrain/soft/point_states.hpp"
 
 namespace softgrain {
 
@@ -95,7 +97,7 @@ double least_J(const SoftGrains& grains) {
 Scene soft_scene(const SoftView& view) {
   const SoftGrains& grains = view.grains;
   std::vector<Vec<2>> position;
-  std::vector<double> radius, pressure, dilatation, stress;
+  std::vector<double> radius, pressure, dilatation, stress, von_mises, plastic_strain;
   std::vector<std::int64_t> grain_of_point, grain_of_vertex;
   for (int g = 0; g < grains.size(); ++g) {
     const Topology& shape = grains.topology(g);
@@ -109,6 +111,8 @@ Scene soft_scene(const SoftView& view) {
       const double V = shape.grid.fullness * shape.points[p].volume;
       radius.push_back(grains.radius(g) * std::sqrt(J * V / std::numbers::pi));
       pressure.push_back(states[p].pressure);
+      von_mises.push_back(states[p].von_mises);
+      plastic_strain.push_back(states[p].plastic_strain);
       dilatation.push_back(J);
       stress.insert(stress.end(), states[p].stress.c.begin(), states[p].stress.c.end());
       grain_of_point.push_back(g);
@@ -124,6 +128,10 @@ Scene soft_scene(const SoftView& view) {
   scene.particles["pressure"] = {1, std::move(pressure)};
   scene.particles["J"] = {1, std::move(dilatation)};
   scene.particles["stress"] = {4, std::move(stress)};
+  if (has_history(grains.law)) {
+    scene.particles["von_mises_stress"] = {1, std::move(von_mises)};
+    scene.particles["plastic_strain"] = {1, std::move(plastic_strain)};
+  }
   scene.particles["grain"] = {1, std::move(grain_of_point)};
   scene.outlines["position"] = to_array(outline);
   scene.outlines["force"] = to_array(forces);
@@ -167,6 +175,7 @@ void visit_nodes(SoftGrains& grains, StateVisitor& visit) {
           &GrainBatch::position);
   declare({"velocity", "m/s", Owner::node, Role::state, "the same of their velocities"},
           &GrainBatch::velocity);
+  visit_history(grains, visit);
 }
 
 namespace {

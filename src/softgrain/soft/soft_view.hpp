@@ -41,7 +41,7 @@ Scene soft_scene(const SoftView& view);
 /// The nodes of each grain in its lane.
 std::vector<GrainView> grain_views(const SoftGrains& grains);
 
-/// Declares positions and velocities of all nodes, eight grains to a row.
+/// Declares positions and velocities of all nodes, and the history of the points, eight grains to a row.
 void visit_nodes(SoftGrains& grains, StateVisitor& visit);
 
 /// Declares the contacts and their impulses. Raises IoError for vertices and walls that are not there.

@@ -78,7 +78,7 @@ Wide largest_eigenvalue(const CellStiffness& K, const MaterialPoint* points, con
 /// Largest omega^2 [1/s^2] of the cells of a batch.
 double largest_square_frequency(const SoftGrains& grains, const GrainBatch& batch) {
   Wide largest = 0.0;
-  for_each_cell_stiffness(grains, batch, [&](int cell, const CellStiffness& K) {
+  for_each_cell_stiffness(grains, batch, 0, [&](int cell, const CellStiffness& K) {
     const Wide square = largest_eigenvalue(K, &batch.topology->points[4 * cell], largest);
     largest = select(square > largest, square, largest);
   });

@@ -133,7 +133,7 @@ TEST_CASE("a held stress is kept, in grains soft and stiff, and never far exceed
   for (const double young_modulus : {1e6, 1e9}) {
     CAPTURE(young_modulus);
     Case c = soft_packing(LoadingPath::compaction);
-    c.mpm.young_modulus = young_modulus;
+    c.mpm.material.young_modulus = young_modulus;
     c.loading.wall_velocity = 0.5;
     c.loading.hold = 12e-3;
     c.loading.hold_stress = 1e4;
@@ -144,7 +144,7 @@ TEST_CASE("a held stress is kept, in grains soft and stiff, and never far exceed
     CHECK(simulation->outcome().completed);
   }
   Case c = soft_packing(LoadingPath::isotropic, Integrator::symplectic_euler);
-  c.mpm.young_modulus = 1e7;
+  c.mpm.material.young_modulus = 1e7;
   c.loading.wall_velocity = 0.5;
   c.loading.hold = 12e-3;
   c.loading.hold_stress = 1e5;

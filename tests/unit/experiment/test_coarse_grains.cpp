@@ -24,7 +24,7 @@ Case packing(int cells, Integrator integrator, int grains = 100) {
 /// No contact carries and no energy is there, over E R^2; areas are those of the case.
 void check_at_rest(const Case& c, Simulation& simulation) {
   const auto row = test::next_row(simulation);
-  const double R = c.sample.largest_diameter / 2, unit = c.mpm.young_modulus * R * R;
+  const double R = c.sample.largest_diameter / 2, unit = c.mpm.material.young_modulus * R * R;
   CHECK(test::value_of(row, "contacts") == 0);
   CHECK(std::abs(test::value_of(row, "elastic_energy")) < 1e-12 * unit);
   CHECK(std::abs(test::value_of(row, "dissipation_contact")) < 1e-12 * unit);
@@ -92,7 +92,7 @@ TEST_CASE("a grain of any number of cells starts between plates that only touch 
       CHECK(test::value_of(test::next_row(*simulation), "area_ratio") == doctest::Approx(1));
       simulation->step();
       const auto row = test::next_row(*simulation);
-      const double unit = c.mpm.young_modulus * c.grain.radius * c.grain.radius;
+      const double unit = c.mpm.material.young_modulus * c.grain.radius * c.grain.radius;
       CHECK(std::abs(test::value_of(row, "elastic_energy")) < 1e-12 * unit);
       CHECK(test::value_of(row, "kinetic_energy") < 1e-12 * unit);
     }

@@ -166,7 +166,7 @@ TEST_CASE("grains of a file that overlap by what is allowed store no energy to s
   const auto simulation = create_simulation(c);
   simulation->step();
   const auto row = test::next_row(*simulation);
-  const double unit = c.mpm.young_modulus * 1e-6;  // E R^2
+  const double unit = c.mpm.material.young_modulus * 1e-6;  // E R^2
   MESSAGE("elastic ", value_of(row, "elastic_energy") / unit, " kinetic ",
           value_of(row, "kinetic_energy") / unit);
   CHECK(value_of(row, "elastic_energy") < 1e-3 * unit);

@@ -11,12 +11,19 @@
 namespace softgrain::test {
 
 inline constexpr double E = 2.0, nu = 0.3;  // stresses of order one
+/// For laws that take more.
+inline constexpr MaterialParameters material{
+    .young_modulus = E, .poisson_ratio = nu, .c20 = -0.1, .c30 = 0.05, .yield_stress = 0.05};
 
-/// Calls check(name, law) for every law that a case file can choose.
+/// Calls check(name, law) for every elastic law that a case file can choose.
 template <class Check>
 void for_each_law(Check check) {
   for (const LawChoice& choice : law_choices())
-    std::visit([&](const auto& law) { check(std::string(choice.name), law); }, choice.make(E, nu));
+    std::visit(
+        [&]<class Law>(const Law& law) {
+          if constexpr (ElasticLaw<Law, 2>) check(std::string(choice.name), law);
+        },
+        choice.make(material));
 }
 
 inline Mat<2> rotation(const Vec<1>& angle) {

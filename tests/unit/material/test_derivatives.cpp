@@ -23,6 +23,10 @@ double energy_in_stretches(const std::string& law, const Vec<3>& s) {
   if (law == "hencky") return hooke([](double stretch) { return std::log(stretch); });
   if (law == "corotated") return hooke([](double stretch) { return stretch - 1; });
   if (law == "st_venant_kirchhoff") return hooke([](double stretch) { return (stretch * stretch - 1) / 2; });
+  if (law == "yeoh") {
+    const double i = dot(s, s) / std::cbrt(J * J) - 3, log_J = std::log(J);
+    return mu / 2 * i - 0.1 * i * i + 0.05 * i * i * i + (lambda + 2 * mu / 3) / 2 * log_J * log_J;
+  }
   const double U = law == "neo_hookean" ? std::log(J) * std::log(J) : (J - 1) * (J - 1);
   return mu / 2 * (dot(s, s) - 3) - mu * std::log(J) + lambda / 2 * U;
 }

@@ -106,6 +106,8 @@ TEST_CASE("a law comes apart into a part of the order of mu and an energy of vol
   check_split<2>(corotated(E, nu));
   check_split<2>(small_strain_hooke(E, nu));
   check_split<3>(small_strain_hooke(E, nu));
+  check_split<2>(yeoh(E, nu, -0.1, 0.05));
+  check_split<3>(yeoh(E, nu, -0.1, 0.05));
   check_split<2>(st_venant_kirchhoff(E, nu));
   check_split<3>(st_venant_kirchhoff(E, nu));
 }
@@ -122,6 +124,37 @@ TEST_CASE("towards incompressibility all that grows without bound is in the ener
   check(corotated(E, 0.4999), corotated(E, nu));
   check(small_strain_hooke(E, 0.4999), small_strain_hooke(E, nu));
   check(st_venant_kirchhoff(E, 0.4999), st_venant_kirchhoff(E, nu));
+}
+
+// Rivlin's: P = 2 (s - 1/s^2) dpsi/dI1 of a bar pulled to s times its length, free across.
+TEST_CASE("nearly incompressible Yeoh rubber in tension has the closed form of rubber elasticity") {
+  const double c20 = -0.1, c30 = 0.05, almost = 0.49999999;
+  const Yeoh law = yeoh(E, almost, c20, c30);
+  const double c10 = E / (4 * (1 + almost));
+  for (const double s : {0.4, 0.8, 1.5, 3.0, 5.0}) {
+    double across = 1 / std::sqrt(s);  // where nothing pulls across, by Newton's method
+    for (int k = 0; k < 20; ++k) {
+      const Mat<3> F = Mat<3>::diagonal({s, across, across});
+      const Mat<9> A = law.tangent(F);
+      across -= law.stress(F)(1, 1) / (A(4, 4) + A(4, 8));
+    }
+    const double i = s * s + 2 / s - 3;
+    const double slope = c10 + 2 * c20 * i + 3 * c30 * i * i;
+    CHECK(law.stress(Mat<3>::diagonal({s, across, across}))(0, 0) ==
+          doctest::Approx(2 * (s - 1 / (s * s)) * slope).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("Yeoh rubber that would give way when stretched is refused by name") {
+  CHECK_THROWS_AS(yeoh(E, nu, 0, -1), UsageError);
+  CHECK_THROWS_AS(yeoh(E, nu, -1, 0.05), UsageError);
+  CHECK_THROWS_WITH_AS(
+      yeoh(4 * 1.3, nu, -0.2, 0.01),
+      "stretched rubber must resist: c30 >= 0, and c20 > -sqrt(3 C_10 c30) = -0.1732 Pa with C_10 = "
+      "E/(4 (1 + nu)) = 1 Pa; got c20 = -0.2 Pa, c30 = 0.01 Pa",
+      UsageError);
+  const Yeoh close = yeoh(E, nu, -std::sqrt(3 * E / 5.2 * 0.05) * 0.999, 0.05);
+  for (double s = 1; s < 4; s += 0.01) CHECK(close.stress(Mat<2>::diagonal({s + 0.01, 1}))(0, 0) > 0);
 }
 
 TEST_CASE("elastic parameters out of range are refused by name") {
@@ -146,6 +179,8 @@ TEST_CASE("every law is made by its own factory, and stands at its place in the 
   CHECK(std::holds_alternative<Corotated>(make_law(MaterialLaw::corotated, E, nu)));
   CHECK(std::holds_alternative<SmallStrainHooke>(make_law(MaterialLaw::small_strain_hooke, E, nu)));
   CHECK(std::holds_alternative<StVenantKirchhoff>(make_law(MaterialLaw::st_venant_kirchhoff, E, nu)));
+  CHECK(std::holds_alternative<Yeoh>(make_law(MaterialLaw::yeoh, E, nu)));
+  CHECK(std::holds_alternative<VonMises>(make_law(MaterialLaw::von_mises, material)));
   CHECK_THROWS_AS(make_law(MaterialLaw::hencky, -1, nu), UsageError);
   for (const LawChoice& choice : law_choices()) CHECK(&law_choice(choice.law) == &choice);
 }

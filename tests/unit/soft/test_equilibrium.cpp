@@ -7,6 +7,8 @@
 #include <string_view>
 
 #include "softgrain/geometry/polygon.hpp"
+#include "softgrain/material/elastic_law.hpp"
+#include "softgrain/soft/point_states.hpp"
 #include "support/soft_grains.hpp"
 
 using namespace softgrain;
@@ -18,11 +20,23 @@ SoftGrains ten_grains(MaterialLaw law, double nu = 0.3) {
   const auto shape = test::disk(2);
   std::vector<GrainPlacement> grains;
   for (int g = 0; g < 10; ++g) grains.push_back(test::placed(shape, 1 + 0.1 * g, {3.0 * g, 1}, {}, 0.4 * g));
-  return {std::move(grains), make_law(law, 1, nu), 1};
+  return {std::move(grains), make_law(law, test::parameters(1, nu)), 1};
 }
 
 bool objective(const AnyLaw& law) {
   return std::visit([]<class Law>(const Law&) { return Law::objective; }, law);
+}
+
+/// P of an undeformed point that is brought to F.
+Mat<2> stress_of(const AnyLaw& any, const Mat<2>& F) {
+  return std::visit(
+      [&]<class Law>(const Law& law) {
+        if constexpr (HistoryLaw<Law, 2>)
+          return law.stress(F, Law::template undeformed<2, double>(), 0);
+        else
+          return law.stress(F);
+      },
+      any);
 }
 
 double largest(const Vec<2, Wide>& v) {
@@ -162,11 +176,11 @@ TEST_CASE("patch test: one F everywhere gives one stress everywhere, and forces 
   for (const LawChoice& choice : law_choices()) {
     CAPTURE(choice.name);
     const auto shape = test::disk(3);
-    SoftGrains grains({test::placed(shape, 2, {0, 0})}, make_law(choice.law, 1, 0.3), 1);
+    SoftGrains grains({test::placed(shape, 2, {0, 0})}, make_law(choice.law, test::parameters(1, 0.3)), 1);
     test::move_nodes(grains, [&](int, const Vec<2>& x) { return F * x; });
     const auto states = point_states(grains, 0);
     REQUIRE(states.size() == shape->points.size());
-    const Mat<2> P = std::visit([&](const auto& law) { return law.stress(F); }, grains.law);
+    const Mat<2> P = stress_of(grains.law, F);
     const double J = F(0, 0) * F(1, 1) - F(0, 1) * F(1, 0);
     for (const PointState& point : states)
       for (int i = 0; i < 2; ++i)
@@ -175,7 +189,10 @@ TEST_CASE("patch test: one F everywhere gives one stress everywhere, and forces 
           const double cauchy = (P(i, 0) * F(j, 0) + P(i, 1) * F(j, 1)) / J;
           CHECK(std::abs(point.stress(i, j) - cauchy) < 1e-14);
         }
-    CHECK(states[0].pressure == doctest::Approx(-(states[0].stress(0, 0) + states[0].stress(1, 1)) / 2));
+    // of laws that flow the mean of all three: the bulk modulus E/(3 (1 - 2 nu)) times ln J, over J
+    const double pressure = has_history(grains.law) ? -std::log(J) / (1.2 * J)
+                                                    : -(states[0].stress(0, 0) + states[0].stress(1, 1)) / 2;
+    CHECK(std::abs(states[0].pressure - pressure) < 1e-14);
     WideVectors force;
     internal_force(grains, grains.batches[0], force);
     const ReferenceGrid& grid = shape->grid;
@@ -244,7 +261,8 @@ TEST_CASE(
   for (const LawChoice& choice : law_choices()) {
     CAPTURE(choice.name);
     const auto energy = [&](double nu) {  // mu = 1
-      SoftGrains grains({test::placed(cell, 1, {0, 0})}, make_law(choice.law, 2 * (1 + nu), nu), 1);
+      SoftGrains grains({test::placed(cell, 1, {0, 0})},
+                        make_law(choice.law, test::parameters(2 * (1 + nu), nu)), 1);
       for (int i = 0; i < 4; ++i)  // the hourglass
         grains.batches[0].position[i][0] += Wide(i % 2 == 0 ? 1e-3 : -1e-3);
       return elastic_energy(grains, grains.batches[0])[0];

@@ -1,5 +1,7 @@
 #include "softgrain/io/case/case_forms.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace softgrain {
@@ -39,9 +41,7 @@ std::vector<FormKey> all_forms() {
       stands_for("kind.diameter.values", {"sample.diameters"}, "diameters of a list"),
       stands_for("kind.diameter.shares", {"sample.shares"}, "share of the grains' area that each diameter of the list has"),
       stands_for("kind.diameter.numbers", {"sample.numbers"}, "how many grains have each diameter of the list, in proportion"),
-      stands_for("kind.law.name", {"mpm.law"}, "elastic law of the material (mpm)"),
-      stands_for("kind.law.young_modulus", {"mpm.young_modulus"}, "Young's modulus (mpm)"),
-      stands_for("kind.law.poisson_ratio", {"mpm.poisson_ratio"}, "Poisson's ratio (mpm)"),
+      stands_for("kind.law.name", {"mpm.law"}, "law of the material (mpm)"),
       stands_for("kind.law.attraction", {"bpm.attraction"}, "attraction between touching primaries (bpm between plates)"),
       stands_for("kind.law.cohesive_pressure", {"bpm.cohesive_pressure"}, "internal cohesive pressure (bpm in a box)"),
       stands_for("kind.law.exponent", {"bpm.exponent"}, "exponent of the attraction (bpm)"),
@@ -76,7 +76,14 @@ std::vector<FormKey> all_forms() {
 }  // namespace
 
 const std::vector<FormKey>& form_keys() {
-  static const std::vector<FormKey> keys = all_forms();
+  static const std::vector<FormKey> keys = [] {
+    std::vector<FormKey> all = all_forms(), material;
+    for (const MaterialParameter& p : material_parameters)
+      material.push_back(
+          stands_for(fmt::format("kind.law.{}", p.name), {fmt::format("mpm.{}", p.name)}, p.text));
+    all.insert(std::ranges::find(all, "kind.law.name", &FormKey::name) + 1, material.begin(), material.end());
+    return all;
+  }();
   return keys;
 }
 

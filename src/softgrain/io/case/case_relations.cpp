@@ -7,10 +7,12 @@
 #include <tuple>
 #include <utility>
 
+#include "softgrain/core/error.hpp"
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/io/case/scope.hpp"
 #include "softgrain/io/case/words.hpp"
+#include "softgrain/material/any_law.hpp"
 
 namespace softgrain {
 namespace {
@@ -135,6 +137,17 @@ std::string cannot_hold_a_stress(const Case& c) {
   return c.loading.hold > 0 ? "" : "loading.hold_stress needs loading.hold > 0: for how long";
 }
 
+/// What the law says of its parameters together.
+std::string law_impossible(const Case& c) {
+  if (c.experiment.model != GrainModel::mpm) return "";
+  try {
+    make_law(c.mpm.law, c.mpm.material);
+    return "";
+  } catch (const UsageError& error) {
+    return fmt::format("mpm.law \"{}\": {}", word_of(c.mpm.law), error.what());
+  }
+}
+
 std::string formulation_cannot(const Case& c) {
   const bool updated = c.mpm.formulation == Formulation::updated_lagrangian;
   if (c.experiment.model != GrainModel::mpm) return "";
@@ -142,16 +155,26 @@ std::string formulation_cannot(const Case& c) {
     return fmt::format(
         "mpm.formulation \"updated_lagrangian\" needs experiment.loading \"diametral\", not \"{}\"",
         word_of(c.experiment.loading));
+  if (updated && law_impossible(c).empty() && has_history(make_law(c.mpm.law, c.mpm.material)))
+    return fmt::format("mpm.formulation \"updated_lagrangian\" takes elastic laws only, not mpm.law \"{}\"",
+                       word_of(c.mpm.law));
   if (!updated && c.mpm.contact_on != ContactOn::outline)
     return fmt::format("mpm.contact_on \"{}\" needs mpm.formulation \"updated_lagrangian\"",
                        word_of(c.mpm.contact_on));
   return "";
 }
 
+std::vector<std::string> keys_of_laws() {
+  std::vector<std::string> keys{"mpm.law"};
+  for (const MaterialParameter& p : material_parameters) keys.push_back(fmt::format("mpm.{}", p.name));
+  return keys;
+}
+
 }  // namespace
 
 const std::vector<Relation>& case_relations() {
   static const std::vector<Relation> relations{
+      {keys_of_laws(), law_impossible},
       {{"loading.unload_at"}, unloading_not_ascending},
       {{"loading.unload_at", "loading.max_strain"}, unloading_after_the_end},
       {{"loading.unload_by", "loading.unload_at"}, unloading_below_zero},
@@ -168,7 +191,7 @@ const std::vector<Relation>& case_relations() {
         "bpm.attraction", "bpm.cohesive_pressure", "bpm.primaries", "bpm.size_ratio", "bpm.exponent",
         "sample.smallest_diameter"},
        too_many_steps},
-      {{"mpm.formulation", "mpm.contact_on", "experiment.loading"}, formulation_cannot},
+      {{"mpm.formulation", "mpm.contact_on", "experiment.loading", "mpm.law"}, formulation_cannot},
       {{"loading.max_packing_fraction", "sample.packing_fraction"}, too_dense_from_the_start},
       {{"loading.hold_stress", "loading.hold", "experiment.loading"}, cannot_hold_a_stress},
   };

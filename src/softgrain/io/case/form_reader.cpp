@@ -18,9 +18,6 @@ struct LaterKey {
 };
 constexpr std::array later_keys{
     LaterKey{"kind.surface", "grains are disks"},
-    LaterKey{"kind.law.yield_stress", "laws are elastic"},
-    LaterKey{"kind.law.hardening", "laws are elastic"},
-    LaterKey{"kind.law.viscosity", "laws are elastic; mpm.damping slows a whole grain down"},
     LaterKey{"pair.restitution", "contact.restitution holds for all pairs"},
     LaterKey{"pair.adhesion", "grains and walls do not stick"},
     LaterKey{"box.z", "space has two dimensions"},

@@ -1,11 +1,13 @@
 #include "softgrain/io/case/schema.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "softgrain/bpm/aggregate.hpp"
 #include "softgrain/io/case/words.hpp"
+#include "softgrain/material/any_law.hpp"
 
 namespace softgrain {
 namespace {
@@ -79,9 +81,7 @@ std::vector<Key> all_keys() {
           "what all grains share: the number of primaries, or, to about 5 %, their size (in a box)", bpm_in_a_box),
       KEY(bpm.library, "", from_to(1, 1000), "different aggregates of which the grains are copies (in a box)", bpm_in_a_box),
 
-      KEY(mpm.law, "", its_words(), "elastic law", with_mpm),
-      KEY(mpm.young_modulus, "MPa", positive(), "Young's modulus E", with_mpm),
-      KEY(mpm.poisson_ratio, "", between(-1, 0.5), "Poisson's ratio nu", with_mpm),
+      KEY(mpm.law, "", its_words(), "law of the material", with_mpm),
       KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points", with_mpm),
       KEY(mpm.integrator, "", its_words(), "backward Euler, or symplectic Euler with lumped masses", total_lagrangian),
       KEY(mpm.formulation, "", its_words(),
@@ -180,6 +180,46 @@ std::vector<TableOfKeys> all_tables() {
 // clang-format on
 #undef KEY
 
+/// Of the parameter of this number: where it lies, and the laws that take it.
+template <std::size_t Number>
+struct ParameterPlace {
+  static constexpr const MaterialParameter& parameter = material_parameters[Number];
+  static double& member(Case& c) { return c.mpm.material.*parameter.value; }
+  static bool acts(const Case& c) { return is_mpm(c) && law_choice(c.mpm.law).takes(parameter.value); }
+  static std::string_view words() {
+    static const std::string text = [] {
+      std::vector<std::string_view> takers;
+      for (const LawChoice& choice : law_choices())
+        if (choice.takes(parameter.value)) takers.push_back(choice.name);
+      if (takers.size() == law_choices().size()) return std::string(with_mpm.words);
+      return fmt::format("with mpm.law {}", fmt::join(takers, " or "));
+    }();
+    return text;
+  }
+};
+
+template <std::size_t... Number>
+std::vector<Key> keys_of_parameters(std::index_sequence<Number...>) {
+  const auto key = []<class Place>(Place) {
+    const MaterialParameter& p = Place::parameter;
+    return Key{fmt::format("mpm.{}", p.name),
+               MemberOf<double>(Place::member),
+               p.unit,
+               {.low = p.low,
+                .high = p.high,
+                .without_low = !p.from_low && std::isfinite(p.low),
+                .without_high = std::isfinite(p.high)},
+               p.text,
+               {Place::words(), Place::acts}};
+  };
+  return {key(ParameterPlace<Number>{})...};
+}
+
+/// One for each of material_parameters.
+std::vector<Key> material_keys() {
+  return keys_of_parameters(std::make_index_sequence<material_parameters.size()>{});
+}
+
 }  // namespace
 
 bool Range::contains(double value) const {
@@ -198,7 +238,12 @@ std::string Range::text() const {
 }
 
 const std::vector<Key>& case_keys() {
-  static const std::vector<Key> keys = all_keys();
+  static const std::vector<Key> keys = [] {
+    std::vector<Key> all = all_keys();
+    const std::vector<Key> material = material_keys();
+    all.insert(std::ranges::find(all, "mpm.law", &Key::name) + 1, material.begin(), material.end());
+    return all;
+  }();
   return keys;
 }
 

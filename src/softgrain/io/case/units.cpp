@@ -72,6 +72,7 @@ constexpr std::array named_dimensions{
     NamedDimension{{0, 1, -2}, "a force per length", "N/m"},
     NamedDimension{{-1, 1, -2}, "a stress", "Pa"},
     NamedDimension{{2, 1, -2}, "an energy", "J"},
+    NamedDimension{{-1, 1, -1}, "a viscosity", "Pa s"},
 };
 
 /// a b^power.

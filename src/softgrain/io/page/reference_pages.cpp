@@ -57,9 +57,11 @@ The explicit step takes 0.01 to 4 % of the wall work (`dissipation_integration`)
 ## In snapshots and pictures
 
 `pressure` of a primary or material point is half the trace of its stress: of a primary by the forces on it and its
-share of the area of its grain (28), of a point by the law of its material. `coordination` of a primary counts its
-contacts that carry force. `force` of a contact is its normal impulse over the step; elastic grains that touch in many
-points have one contact with the sum. What each file calls them: [files of a run](format.md).
+share of the area of its grain (28), of a point by the law of its material. Of laws that flow it is a third of the
+whole trace, with the stress across the plane, and `von_mises_stress` and `plastic_strain` stand beside it.
+`coordination` of a primary counts its contacts that carry force. `force` of a contact is its normal impulse over the
+step; elastic grains that touch in many points have one contact with the sum. What each file calls them:
+[files of a run](format.md).
 )";
 
 constexpr std::string_view checkpoint_begin = R"(# Arrays of a checkpoint
@@ -83,8 +85,11 @@ std::string_view word(Role role) {
   return words[static_cast<std::size_t>(role)];
 }
 
-std::vector<FieldShape> fields_of(GrainModel model, Integrator integrator, Formulation formulation) {
+std::vector<FieldShape> fields_of(GrainModel model, Integrator integrator, Formulation formulation,
+                                  MaterialLaw law = MaterialLaw::neo_hookean) {
   Case c;
+  c.mpm.law = law;
+  c.mpm.material.yield_stress = 1e5;  // of what flows
   c.experiment.model = model;
   c.bpm.primaries = 20;
   c.mpm.cells = 2;
@@ -118,6 +123,8 @@ std::string checkpoint_page() {
   const std::pair<std::string_view, std::vector<FieldShape>> models[] = {
       {"Bonded grains", fields_of(GrainModel::bpm, backward_euler, total_lagrangian)},
       {"Elastic grains, implicit", fields_of(GrainModel::mpm, backward_euler, total_lagrangian)},
+      {"Grains that flow, implicit",
+       fields_of(GrainModel::mpm, backward_euler, total_lagrangian, MaterialLaw::von_mises)},
       {"Elastic grains, explicit", fields_of(GrainModel::mpm, symplectic_euler, total_lagrangian)},
       {"Elastic grains, updated Lagrangian",
        fields_of(GrainModel::mpm, symplectic_euler, updated_lagrangian)}};

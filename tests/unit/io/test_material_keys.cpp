@@ -1,0 +1,73 @@
+#include <doctest/doctest.h>
+
+#include <string>
+#include <vector>
+
+#include "softgrain/io/case/case_file.hpp"
+#include "softgrain/io/case/scope.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+std::string refusal(const std::string& text) {
+  try {
+    parse_case(text, "case.toml", {});
+  } catch (const CaseFileError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool mentions(const std::string& text, const std::string& word) {
+  return text.find(word) != std::string::npos;
+}
+
+const std::string mpm = "[experiment]\nmodel = 'mpm'\n[mpm]\n";
+
+}  // namespace
+
+TEST_CASE("a law takes its parameters by name, in the short form and in a kind") {
+  const Case in_short = parse_case(
+      mpm +
+          "law = 'von_mises'\nyield_stress = '70 MPa'\nhardening_modulus = '1 GPa'\nviscosity = '5 kPa s'\n",
+      "case.toml", {});
+  const Case in_long = parse_case(
+      "[[kind]]\nmodel = 'mpm'\nlaw = { name = 'von_mises', yield_stress = '70 MPa', hardening_modulus = '1 "
+      "GPa', "
+      "viscosity = '5 kPa s' }\n",
+      "case.toml", {});
+  for (const Case& c : {in_short, in_long}) {
+    CHECK(c.mpm.law == MaterialLaw::von_mises);
+    CHECK(c.mpm.material.yield_stress == 70e6);
+    CHECK(c.mpm.material.hardening_modulus == 1e9);
+    CHECK(c.mpm.material.viscosity == 5e3);
+    CHECK(c.mpm.material.young_modulus == Case{}.mpm.material.young_modulus);
+  }
+}
+
+TEST_CASE("what a law cannot have is an error of the case, with the line of its last key") {
+  CHECK(mentions(
+      refusal(mpm + "law = 'von_mises'\n"),
+      "case.toml:4:1: error: mpm.law \"von_mises\": a law that flows needs a yield_stress > 0 Pa, got 0"));
+  CHECK(mentions(
+      refusal(mpm + "law = 'von_mises'\nyield_stress = 1e5\nsaturation_stress = 2e5\n"),
+      "case.toml:6:1: error: mpm.law \"von_mises\": saturation_stress and saturation_rate belong together"));
+  CHECK(mentions(refusal(mpm + "law = 'yeoh'\nc30 = '-1 MPa'\n"), "stretched rubber must resist"));
+  CHECK(mentions(refusal(mpm + "law = 'von_mises'\nyield_stress = '-1 MPa'\n"), "mpm.yield_stress"));
+  CHECK(mentions(refusal(mpm + "viscosity = '1 MPa'\n"), "wrong dimension for a viscosity"));
+  CHECK(mentions(refusal("[[kind]]\nlaw = { yield_stres = 1 }\n"), "did you mean 'kind.law.yield_stress'?"));
+  CHECK(
+      mentions(refusal(mpm + "law = 'von_mises'\nyield_stress = 1e5\nformulation = 'updated_lagrangian'\n"),
+               "mpm.formulation \"updated_lagrangian\" takes elastic laws only, not mpm.law \"von_mises\""));
+}
+
+TEST_CASE("a parameter that the law does not take is named as without effect") {
+  const Case c = parse_case(mpm + "c20 = 1e4\n", "case.toml", {});
+  const std::vector<std::string> notes = notes_on_effect(c, {"mpm.c20", "mpm.young_modulus"});
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0] == "note: mpm.c20 has no effect on mpm between plates: it acts only with mpm.law yeoh");
+  const CaseReading metal = parse_case_with_notes(
+      "[[kind]]\nmodel = 'mpm'\nlaw = { name = 'hencky', yield_stress = '70 MPa' }\n", "case.toml", {});
+  CHECK(metal.without_effect == std::vector<std::string>{"mpm.yield_stress"});
+}
