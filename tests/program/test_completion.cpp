@@ -130,6 +130,9 @@ TEST_CASE("fish completes verbs, options and keys when it is there") {
   CHECK(offers("softgrain run case.toml --st").starts_with("--stop-after\t"));
   CHECK(offers("softgrain run case.toml --set contact.fr").starts_with("contact.friction="));
   CHECK(offers("softgrain sweep case.toml --vary sample.see").starts_with("sample.seed="));
+  CHECK(offers("softgrain new x --template compaction-m").starts_with("compaction-mpm\t"));
+  CHECK(offers("softgrain run case.toml --set experiment.model=m").starts_with("experiment.model=mpm\t"));
+  CHECK(offers("softgrain completion fi") == "fish\n");
 }
 
 TEST_CASE("zsh completes verbs, options and keys when it is there") {
@@ -152,6 +155,8 @@ print -r -- ${${said##*<}%%>*}
   CHECK(completed("run case.toml --st") == "run case.toml --stop-after\n");
   CHECK(completed("run case.toml --set contact.fr") == "run case.toml --set contact.friction=\n");
   CHECK(completed("sweep case.toml --vary sample.see") == "sweep case.toml --vary sample.seed=\n");
+  CHECK(completed("export run --to con") == "export run --to contacts\n");
+  CHECK(completed("run case.toml --set experiment.model=m") == "run case.toml --set experiment.model=mpm\n");
 }
 
 TEST_CASE("the manual page has every verb") {

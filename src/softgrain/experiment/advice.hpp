@@ -15,7 +15,7 @@ struct Advice {
   /// the material's own, E or sigma_I = F0/<a0>.
   double stress = 0;
   /// I = |d eps/dt| d sqrt(rho/p) at p = stress, with the rate at the start and the mean diameter; for one
-  /// grain between plates v sqrt(rho/p). Loading is quasi-static below 1e-3.
+  /// grain between walls v sqrt(rho/p). Loading is quasi-static below 1e-3.
   double inertial_number = 0;
 };
 

@@ -78,7 +78,7 @@ double wave_speed(const Case& c) { return std::sqrt(wave_modulus(c) / c.grain.de
 
 /// How much more Newton's method and the contacts take in a step that lasts s = dt c/R wave times of a grain:
 /// 20 grains took 0.33, 0.64, 2.3, 4.0 and 5.2 s at 5, 0.5, 0.1, 0.01 and 0.001 m/s, s = 0.4 to 2000; one
-/// grain between plates the same at any speed.
+/// grain between walls the same at any speed.
 double quasi_static_factor(const Case& c) {
   if (!is_in_a_box(c)) return 4;
   const double s = first_time_step(c) * wave_speed(c) / smallest_radius(c);

@@ -41,7 +41,7 @@ struct StableStep {
 /// with g(x+) linear about x + dt v: at x itself, sliding along an edge would drive vertices into it.
 class ExplicitDynamics {
  public:
-  ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
+  ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> box_walls,
                    const ExplicitOptions& explicit_options);
 
   /// One step of dt, in equal sub-steps of at most longest_stable_step: cells are looked at again every so
@@ -82,7 +82,7 @@ class ExplicitDynamics {
   void kick_batch(double dt, const WideVectors& force, GrainBatch& batch, BatchStep& step) const;
   void drift_outline(double dt);
   void add_contact_work(double dt);
-  void add_penetration(SoftStepReport& report) const;
+  void add_overlaps(SoftStepReport& report) const;
 
   double mean_radius_ = 0, smallest_radius_ = 0;
   OutlineNeighbours neighbours_;

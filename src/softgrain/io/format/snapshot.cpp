@@ -67,9 +67,6 @@ std::string content_hash(const Datasets& datasets) {
   return hash.digest();
 }
 
-/// Of these 0.1.0 before its release knew nothing.
-constexpr std::array<std::string_view, 3> later_totals{"residual_limit", "energy_error", "energy_scale"};
-
 /// The datasets of /run: the same list writes and reads them.
 template <class Report, class Sums, class Visit>
 void for_each_total(Report& report, Sums& sums, Visit&& visit) {
@@ -123,8 +120,6 @@ Snapshot snapshot_of(const Datasets& datasets, const std::string& name) {
     snapshot.scene.outlines = arrays_of(datasets, outline_group);
     snapshot.scene.wall_segments = std::get<std::vector<double>>(datasets.at(walls_path).values);
     for_each_total(snapshot.report, snapshot.sums, [&]<class T>(std::string_view total, T& value) {
-      const bool is_late = std::ranges::find(later_totals, total) != later_totals.end();
-      if (is_late && !datasets.contains(run_group + std::string(total))) return;
       value = std::get<std::vector<T>>(datasets.at(run_group + std::string(total)).values).at(0);
     });
   } catch (const std::logic_error&) {  // at
