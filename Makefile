@@ -5,7 +5,7 @@
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-7s %s\n", $$1, $$2}' Makefile
 
-demo: ## one soft grain between two plates: builds, simulates, draws (out/demo/figures)
+demo: ## one soft grain between two walls: builds, simulates, draws (out/demo/figures)
 	@tools/install_dependencies.sh
 	cmake --preset release
 	cmake --build --preset release

@@ -36,7 +36,7 @@ def read(path):
 
 
 def stress(row):
-    """Vertical stress [MPa], mean of lid and bottom."""
+    """Vertical stress [MPa], mean of top and bottom."""
     return (row["stress_bottom"] + row["stress_top"]) / 2e6
 
 

@@ -114,7 +114,7 @@ void examine(bool json) {
 
 void add_doctor_verb(CLI::App& app) {
   auto json = std::make_shared<bool>(false);
-  CLI::App* verb = app.add_subcommand("doctor", "Say what this program and this machine can do");
+  CLI::App* verb = app.add_subcommand("doctor", "Check this installation and report what is missing");
   verb->add_flag("--json", *json, "as JSON");
   verb->footer("Example:\n  softgrain doctor    to be pasted into a bug report");
   verb->callback([json] { examine(*json); });

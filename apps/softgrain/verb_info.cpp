@@ -89,7 +89,7 @@ Json describe_run(const RunPaths& paths) {
 std::string run_text(const Json& run, const RunPaths& paths) {
   const auto text = [&](const char* key) { return run.at(key).get<std::string>(); };
   Lines lines{
-      {"case", summary(read_case(paths.case_file().string()))},
+      {"case", summary(parse_recorded_case(read_file(paths.case_file()), paths.case_file().string()))},
       {"begun", fmt::format("{}, resumed {} times", text("started"), run.at("resumes").get<int>())},
       {"program", fmt::format("softgrain {} ({})", run.at("program").at("version").get<std::string>(),
                               run.at("program").at("commit").get<std::string>())},
@@ -119,7 +119,7 @@ std::string info_of_run(const RunPaths& paths, bool as_json) {
 
 std::string info_of_snapshot(const fs::path& path, bool as_json) {
   const Snapshot snapshot = read_snapshot(path);
-  const Case the_case = parse_case(snapshot.case_text, path.string());
+  const Case the_case = parse_recorded_case(snapshot.case_text, path.string());
   const auto hash = Hdf5Reader(path).text_attribute("content_hash");
   const Verdict verdict = verdict_of(snapshot.report);
   if (as_json) {

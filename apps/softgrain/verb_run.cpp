@@ -190,6 +190,17 @@ void run_from(const RunArguments& arguments) {
   carry_out(request, directory, arguments.options, notes_of(reading), &origin.snapshot.checkpoint);
 }
 
+Case case_to_resume(const std::string& text, const RunPaths& paths) {
+  try {
+    return parse_case(text, paths.case_file().string());
+  } catch (const CaseFileError& error) {
+    throw CaseFileError(fmt::format(
+        "{}\nthis case meant something else to the version that began the run: resume it with that "
+        "version, or begin it anew; info, plot and report still show it",
+        error.what()));
+  }
+}
+
 void resume_run(const RunOptions& options) {
   const RunPaths paths{options.directory};
   require(is_begun(paths), "{} is not a run's directory: it has neither run.json nor snapshots",
@@ -200,8 +211,8 @@ void resume_run(const RunOptions& options) {
           options.directory, options.directory);
   RunRequest request = request_of(options, true);
   const RunDirectory directory(paths.root, RunDirectory::IfNotEmpty::keep);
-  request.the_case = read_case(paths.case_file().string());
   request.case_text = read_file(paths.case_file());
+  request.the_case = case_to_resume(request.case_text, paths);
   carry_out(request, directory, options, notes_of({request.the_case, {}, {}}));
 }
 

@@ -58,6 +58,7 @@ StepParts time_parts(const Simulation& simulation, const Case& paper, const Mean
   AttractionForces listed({.F0 = paper.bpm.attraction, .gamma = paper.bpm.exponent});
 
   int stale = 0;
+  NeighbourReference<2> checked = state.reference;
   const auto seconds = fastest({
       [&] {
         Simulation copy = simulation;
@@ -68,7 +69,7 @@ StepParts time_parts(const Simulation& simulation, const Case& paper, const Mean
       repeated(calls,
                [&] { signorini_offset<2>(contacts, particles.velocity, {}, paper.time.step, offset); }),
       repeated(calls, [&] { swept.sweep(true); }),
-      repeated(calls, [&] { stale += needs_rebuild(state.reference, particles) ? 1 : 0; }),
+      repeated(calls, [&] { stale += renew_stale_lists(checked, particles) ? 1 : 0; }),
       repeated(calls, [&] { start(started); }),
       repeated(calls, [&] { pushed_system.apply_impulses(contacts.impulse); }),
       repeated(calls,

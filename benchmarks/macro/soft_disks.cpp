@@ -18,7 +18,7 @@ using namespace softgrain::bench;
 namespace {
 
 constexpr int disks = 500, wanted_contacts = 3500, steps_timed = 20, rounds = 5;
-constexpr double mu = 0.3, speed = 5, dt = 5e-6;  // of the lid [m/s], of a step [s]
+constexpr double mu = 0.3, speed = 5, dt = 5e-6;  // of the top wall [m/s], of a step [s]
 constexpr double reference_step = 2.2;            // [s] LMGC90, 500 x 57 nodes, 3 500 contacts
 
 /// The grid of mpm.cells = 4 without the innermost of its three rings: 5 x 5 + 2 x 16 = 57 nodes.
@@ -38,7 +38,7 @@ ReferenceGrid grid_of_57_nodes() {
   return grid;
 }
 
-/// A box of loose disks under a lid that comes down.
+/// A box of loose disks under a top wall that comes down.
 ImplicitDynamics loose_box(ReferenceGrid grid) {
   const BoxSample sample = sample_box({.grains = disks});
   const auto shape = std::make_shared<const Topology>(std::move(grid));

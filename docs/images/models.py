@@ -25,7 +25,7 @@ def snapshots(run):
 
 
 def most_squeezed(run):
-    """The snapshot whose plates are closest."""
+    """The snapshot whose walls are closest."""
     def height(file):
         with h5py.File(file) as snapshot:
             return np.ptp(snapshot["scene/walls"][:, 1])

@@ -3,7 +3,7 @@
     python3 examples/python/loading_path.py [FIGURE]
 
 Needs the compiled module: export PYTHONPATH=build/release/python. A path is any function of time that gives the rate of the distance
-of the plates; it may look at whatever else it knows, such as the last row of the simulation that it drives.
+of the walls; it may look at whatever else it knows, such as the last row of the simulation that it drives.
 """
 
 import math
@@ -15,7 +15,7 @@ import softgrain
 
 CASE = {"grain.radius": "5 mm", "bpm.primaries": 300, "time.step": "1 us"}
 PERIOD = 4e-3  # of a cycle [s]
-DEPTHS = [0.2e-3, 0.4e-3, 0.6e-3]  # by which the plates come together in each [m]
+DEPTHS = [0.2e-3, 0.4e-3, 0.6e-3]  # by which the walls come together in each [m]
 
 
 def cycles(time):
@@ -25,7 +25,7 @@ def cycles(time):
 
 
 def squeeze(case=CASE, every=40):
-    """Distance of the plates [m] and the force between them [N/m], row by row."""
+    """Distance of the walls [m] and the force between them [N/m], row by row."""
     simulation = softgrain.Simulation(case, motion=cycles, duration=PERIOD * len(DEPTHS))
     rows = [simulation.observe()] + [now.observe() for now in simulation.steps(every=every)]
     return {name: np.array([row[name] for row in rows]) for name in ("time", "wall_height", "force_top", "wall_work")}
@@ -46,7 +46,7 @@ def draw(series, path):
 
     figure, axes = plt.subplots(figsize=(4.5, 3), layout="constrained")
     axes.plot(1e3 * (series["wall_height"][0] - series["wall_height"]), series["force_top"], color="k", lw=0.8)
-    axes.set(xlabel="approach of the plates (mm)", ylabel="force (N/m)")
+    axes.set(xlabel="approach of the walls (mm)", ylabel="force (N/m)")
     figure.savefig(path)
 
 

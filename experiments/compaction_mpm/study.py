@@ -43,7 +43,7 @@ def run_case(program, out, integrator, cells, friction, poisson, step):
 
 
 def window(rows, low, high):
-    """Mean Phi and vertical stress [MPa] (mean of lid and bottom) between two strains."""
+    """Mean Phi and vertical stress [MPa] (mean of top and bottom) between two strains."""
     inside = [r for r in rows[1:] if low <= r["strain"] < high]
     return (statistics.mean(r["phi"] for r in inside),
             statistics.mean(map(packing_series.stress, inside)))

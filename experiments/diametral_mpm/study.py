@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The elastic grain between plates: how near to Johnson and to converged finite elements, and on what does it depend?
+"""The elastic grain between walls: how near to Johnson and to converged finite elements, and on what does it depend?
 
     study.py small  -o DIR [--program PATH]   slow, to d/R = 0.06, 8 to 64 cells      -> results/small.csv
     study.py large  -o DIR [--program PATH]   laws and cells, to d/R = 0.345          -> large.csv, convergence.csv, stress.csv,
@@ -37,7 +37,7 @@ def run(program, directory, settings):
 
 
 def curve(rows):
-    """(d/R, F/(E* R)) of each row, mean of both plates."""
+    """(d/R, F/(E* R)) of each row, mean of both walls."""
     start = rows[0]["wall_height"]
     return [((start - row["wall_height"]) / (2 * RADIUS),
              (row["force_bottom"] + row["force_top"]) / 2 / (PLANE_STRAIN * RADIUS)) for row in rows[1:]]
@@ -97,12 +97,12 @@ def large(program, out):
     for law, cells in cases:
         rows, info = run(program, out / f"{law}_{cells}", {"mpm.law": f'"{law}"', "mpm.cells": cells})
         points = curve(rows)
-        plates = max(abs(percent(r["force_top"], r["force_bottom"])) for r in rows[1:] if r["strain"] > 0.01)
+        walls = max(abs(percent(r["force_top"], r["force_bottom"])) for r in rows[1:] if r["strain"] > 0.01)
         for approach, reference in REFERENCE.items():
             value = at(points, approach)
             forces.append({"law": law, "cells": cells, "d_over_R": approach, "F_over_EsR": value,
                            "error_percent": percent(value, reference) if law == "neo_hookean" else math.nan,
-                           "top_against_bottom_percent": plates, "reached_strain": rows[-1]["strain"],
+                           "top_against_bottom_percent": walls, "reached_strain": rows[-1]["strain"],
                            "cpu_s": float(info.get("cpu_seconds", "nan"))})
         sigma = [(r["strain"], (r["stress_bottom"] + r["stress_top"]) / 2e6) for r in rows[1:]]
         stresses.append({"law": law, "cells": cells, **{f"sigma_MPa_at_{eps:g}": at(sigma, eps) for eps in STRAINS}})

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Total against updated Lagrangian, outlines against grid nodes: one grain between plates.
+"""Total against updated Lagrangian, outlines against grid nodes: one grain between walls.
 
     study.py force -o DIR [--program PATH]   seven runs, about four minutes on one core -> results/force.csv
-    study.py gap --tests PATH                distance at which a plate is first felt, from the verification tests
+    study.py gap --tests PATH                distance at which a wall is first felt, from the verification tests
                                              -> results/gap.csv
     study.py plot                            results/formulations.png; needs Debian's python3-matplotlib
 
@@ -40,7 +40,7 @@ def run(program, directory, settings):
 
 
 def force_at(rows, approach):
-    """F/(E* R), mean over both plates and over the rows around d/R."""
+    """F/(E* R), mean over both walls and over the rows around d/R."""
     start = rows[0]["wall_height"]
     near = [row for row in rows[1:]
             if abs((start - row["wall_height"]) / (2 * RADIUS) - approach) < WINDOW * approach]
@@ -72,7 +72,7 @@ def force(program, out):
 
 
 def gap(tests):
-    output = subprocess.run([tests, "--test-case=the force of a plate begins at the outline*", "--success=false"],
+    output = subprocess.run([tests, "--test-case=the force of a wall begins at the outline*", "--success=false"],
                             capture_output=True, text=True, check=True).stdout
     found = re.findall(r"first force: (\w+) (\w+) (\S+) (\S+)", output)
     write(RESULTS / "gap.csv", [{"shape_functions": shape, "contact_on": contact, "least_cells": round(float(least), 3),

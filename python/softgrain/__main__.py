@@ -1,5 +1,6 @@
 """What `softgrain plot`, `sweep`, `export` and `reproduce` become: python3 DIR/softgrain VERB WORDS."""
 
+import gc
 import sys
 from importlib import import_module
 from pathlib import Path
@@ -8,7 +9,11 @@ if not __package__:  # the folder itself was run: its neighbours must not hide o
     sys.path[0] = str(Path(__file__).parent.parent)
 
 
+GARBAGE_THRESHOLD = 100_000  # objects: to import Matplotlib makes many and no rubbish, and looking for it costs 5 % of a plot
+
+
 def main(verb, *words):
+    gc.set_threshold(GARBAGE_THRESHOLD)
     try:
         if verb != "sweep":
             import h5py  # noqa: F401  needed later, wanted now

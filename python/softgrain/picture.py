@@ -20,7 +20,7 @@ STRONG_FORCE = 0.99  # share of all forces below the one that has the full width
 class Surface(NamedTuple):
     """Polygons, or disks where there are none, and one value for each."""
 
-    polygons: list  # (k, 2) each
+    polygons: list | np.ndarray  # (k, 2) each
     centres: np.ndarray  # (n, 2)
     radii: np.ndarray
     values: np.ndarray
@@ -88,7 +88,7 @@ def surface(snapshot: Snapshot, values) -> Surface:
     quads = cells(snapshot)
     if quads is None:
         return Surface([], position, POINT_COVER * radius, values, polygons)
-    return Surface(list(quads), NOWHERE, np.empty(0), values.reshape(-1, 4).mean(axis=1), polygons)
+    return Surface(quads, NOWHERE, np.empty(0), values.reshape(-1, 4).mean(axis=1), polygons)
 
 
 def shows_whole_grains(snapshot: Snapshot) -> bool:

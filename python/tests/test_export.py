@@ -89,7 +89,7 @@ class Particles(Temporary):
             np.testing.assert_allclose(numbers[:, :2], snapshot.particles["position"], rtol=1e-8)
             np.testing.assert_allclose(numbers[:, 4], snapshot.particles["pressure"], rtol=1e-8)
         lattice = np.array(re.search('Lattice="([^"]*)"', frames[0][0])[1].split(), float).reshape(3, 3)
-        self.assertAlmostEqual(lattice[0, 0], 6e-3)  # the plates are 6 mm long
+        self.assertAlmostEqual(lattice[0, 0], 6e-3)  # the walls are 6 mm long
 
     def test_a_lammps_dump_counts_grains_from_one_and_holds_all_particles_in_its_box(self):
         self.add_grains()

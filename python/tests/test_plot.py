@@ -21,6 +21,7 @@ from PIL import Image
 import softgrain
 from softgrain import picture, plot
 from softgrain.plot.__main__ import main
+from softgrain.plot.layout import panel_grid
 from softgrain.plot.rows import Forces, Layers, Pressure
 from softgrain.plot.stages import choose_stages
 
@@ -171,11 +172,15 @@ class Pictures(Temporary):
                 self.assert_texts_apart(figure)
 
     def test_the_panels_keep_clear_of_one_another_and_of_their_headings(self):
+        run = self.open()
         with plot.style():
-            figure = plot.draw_grain(self.open())
+            figure = plot.draw_grain(run)
             figure.draw_without_rendering()
-        things = [*enumerate(figure.axes), *((text.get_text(), text) for text in figure.texts)]
-        self.assert_boxes_apart([(name, thing.get_window_extent()) for name, thing in things])
+        page, *keys = figure.axes
+        frames = {tuple(artist.get_clip_box().extents): artist.get_clip_box() for artist in page.collections}
+        self.assertEqual(len(frames), 3 * len(choose_stages(run, run.times)))  # pressure, forces, layers
+        things = [*enumerate(keys), *((text.get_text(), text) for text in figure.texts)]
+        self.assert_boxes_apart([*frames.items(), *((name, thing.get_window_extent()) for name, thing in things)])
 
     def test_the_curve_says_its_plateau_and_the_characteristic_stress(self):
         with plot.style():
@@ -284,8 +289,6 @@ class Elastic(Temporary):
         self.assertNotIn("mean ", words.replace("mean radius", ""))
 
     def test_grains_of_a_packing_are_drawn_as_grains_not_as_points(self):
-        from matplotlib.figure import Figure
-
         square = np.array([(0, 0), (1, 0), (1, 1), (0, 1.0)])
         points = np.concatenate([square * 0.5 + 0.25, square * 0.5 + (0.25, 1.25)])
         snapshot = softgrain.Snapshot(
@@ -297,12 +300,12 @@ class Elastic(Temporary):
             outlines={"position": np.concatenate([square, square + (0, 1)]), "grain": np.repeat([0, 1], 4)})
         self.assertEqual(Layers([snapshot]).layer.tolist(), [0, 1])
         for way in (Forces, Layers, Pressure):
-            axes = Figure().add_subplot()
-            way([snapshot]).draw(axes, 0, 1.0)
-            self.assertEqual(len(axes.collections[0].get_paths()), 2)  # two polygons, not eight disks
-        axes = Figure().add_subplot()
-        Forces([snapshot]).draw(axes, 0, 1.0)
-        lines = np.concatenate([np.asarray(c.get_segments()).reshape(-1, 2, 2) for c in axes.collections[1:]])
+            panel = panel_grid([(0, 1, 0, 2)], 1).panels[0, 0]
+            way([snapshot]).draw(panel, 0)
+            self.assertEqual(len(panel.axes.collections[0].get_paths()), 2)  # two polygons, not eight disks
+        panel = panel_grid([(0, 1, 0, 2)], 1).panels[0, 0]
+        Forces([snapshot]).draw(panel, 0)
+        lines = np.concatenate([np.asarray(c.get_segments()).reshape(-1, 2, 2) for c in panel.axes.collections[1:]])
         np.testing.assert_allclose(lines[1], [[0.5, 0.5], [0.5, 1.5]])  # between the centres, the stronger above
         np.testing.assert_allclose(lines[0][:, 0], [0.5, 0.5])  # to the foot of the wall
         self.assertLess(lines[0][1, 1], 0.1)

@@ -74,7 +74,8 @@ TEST_CASE("an explicit step beyond the stable one is refused, with the stable on
 }
 
 TEST_CASE(
-    "a lid that is too fast for an explicit step ends with exit code 3, its name and an intact snapshot") {
+    "a top wall that is too fast for an explicit step ends with exit code 3, its name and an intact "
+    "snapshot") {
   const TemporaryDirectory directory;
   const ProcessResult result =
       run_box(directory, {"mpm.integrator=\"explicit\"", "loading.wall_velocity=\"1e5 m/s\""});

@@ -61,7 +61,7 @@ TEST_CASE("the columns that are offered are columns of a packing or of a grain")
   const softgrain::test::TemporaryDirectory folder;
   std::string header;
   for (const std::string loading : {"compaction", "diametral"})
-    for (const std::string model : {"mpm", "bpm"}) {
+    for (const std::string model : {"mpm", "bpm", "metal"}) {
       const std::string out = (folder.path() / (loading + model)).string();
       softgrain::test::run({SOFTGRAIN_PROGRAM,
                             "run",
@@ -72,7 +72,11 @@ TEST_CASE("the columns that are offered are columns of a packing or of a grain")
                             "--set",
                             "experiment.loading=" + loading,
                             "--set",
-                            "experiment.model=" + model,
+                            "experiment.model=" + (model == "bpm" ? model : "mpm"),
+                            "--set",
+                            model == "metal" ? "mpm.law=von_mises" : "mpm.law=neo_hookean",
+                            "--set",
+                            model == "metal" ? "mpm.yield_stress=1e5" : "mpm.yield_stress=0",
                             "--set",
                             "sample.grains=4",
                             "--set",
@@ -130,6 +134,9 @@ TEST_CASE("fish completes verbs, options and keys when it is there") {
   CHECK(offers("softgrain run case.toml --st").starts_with("--stop-after\t"));
   CHECK(offers("softgrain run case.toml --set contact.fr").starts_with("contact.friction="));
   CHECK(offers("softgrain sweep case.toml --vary sample.see").starts_with("sample.seed="));
+  CHECK(offers("softgrain new x --template compaction-m").starts_with("compaction-mpm\t"));
+  CHECK(offers("softgrain run case.toml --set experiment.model=m").starts_with("experiment.model=mpm\t"));
+  CHECK(offers("softgrain completion fi") == "fish\n");
 }
 
 TEST_CASE("zsh completes verbs, options and keys when it is there") {
@@ -152,6 +159,8 @@ print -r -- ${${said##*<}%%>*}
   CHECK(completed("run case.toml --st") == "run case.toml --stop-after\n");
   CHECK(completed("run case.toml --set contact.fr") == "run case.toml --set contact.friction=\n");
   CHECK(completed("sweep case.toml --vary sample.see") == "sweep case.toml --vary sample.seed=\n");
+  CHECK(completed("export run --to con") == "export run --to contacts\n");
+  CHECK(completed("run case.toml --set experiment.model=m") == "run case.toml --set experiment.model=mpm\n");
 }
 
 TEST_CASE("the manual page has every verb") {

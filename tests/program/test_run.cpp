@@ -170,6 +170,24 @@ TEST_CASE("a case that differs from the stored one is not resumed") {
   CHECK(state_of(directory.path() / "out") == "stopped");
 }
 
+TEST_CASE("a run that was begun under another meaning of a key is shown, but not resumed") {
+  const TemporaryDirectory directory;
+  directory.file("small.toml", small_case);
+  REQUIRE(softgrain_run(directory, {"run", "small.toml", "-o", "out", "--stop-after", "1 us"}).exit_code ==
+          75);
+  // contact.friction was the friction between the primaries of one grain
+  const std::string text = read_text(directory.path() / "out/case.toml");
+  const std::size_t at = text.find("[contact]\nfriction = 0.0");
+  REQUIRE(at != std::string::npos);
+  directory.file("out/case.toml", text.substr(0, at) + "[contact]\nfriction = 0.3" + text.substr(at + 24));
+  CHECK(softgrain_run(directory, {"info", "out"}).exit_code == 0);
+  CHECK(softgrain_run(directory, {"report", "out"}).exit_code == 0);
+  const auto resumed = softgrain_run(directory, {"resume", "out"});
+  CHECK(resumed.exit_code == 2);
+  CHECK(resumed.err.find("write bpm.inner_friction = 0.3") != std::string::npos);
+  CHECK(resumed.err.find("resume it with that version, or begin it anew") != std::string::npos);
+}
+
 TEST_CASE("an output that cannot be written is exit 4, and a broken pipe does not end a run") {
   const TemporaryDirectory directory;
   directory.file("small.toml", small_case);

@@ -18,7 +18,7 @@ constexpr auto bonded_grain =
     "[bpm]\nprimaries = 30\n[loading]\nmax_strain = 0.01\nwall_velocity = '2 m/s'\n"
     "[output]\nsamples = 5\nsnapshots = 1\nreport = false\nvtk = false\n";
 
-/// Four elastic grains that the lid squeezes to less than 1 MPa.
+/// Four elastic grains that the top wall squeezes to less than 1 MPa.
 constexpr auto elastic_box =
     "[experiment]\nmodel = 'mpm'\nloading = 'compaction'\n[mpm]\ncells = 3\n"
     "[sample]\ngrains = 4\npacking_fraction = 0.5\n[loading]\nwall_velocity = '2 m/s'\nmax_strain = 0.4\n"
@@ -132,7 +132,7 @@ TEST_CASE("check names keys without effect, the inertial number and the step, fo
       "[experiment]\nmodel = 'mpm'\n[solver]\nmax_sweeps = 60\n[loading]\nwall_velocity = '1 mm/s'\n");
   const ProcessResult text = workshop.softgrain({"check", "case.toml"});
   CHECK(mentions(text.err,
-                 "note: solver.max_sweeps has no effect on mpm between plates: it acts only on bpm\n"));
+                 "note: solver.max_sweeps has no effect on mpm between walls: it acts only on bpm\n"));
   CHECK(mentions(text.err, "inertial number about 9.9e-06 at 10 MPa, below 1e-3: quasi-static\n"));
   CHECK(mentions(text.err, "time step "));
   const json machine = json::parse(workshop.softgrain({"check", "case.toml", "--json"}).out);

@@ -23,7 +23,8 @@ TEST_CASE(
 TEST_CASE("a case too large for the machine is refused before anything is written, unless forced") {
   const Workshop workshop;
   const std::string line =
-      "$SG new a --template compaction-mpm > /dev/null; ulimit -v 600000; exec $SG run a/case.toml -q ";
+      "$SG new a --template compaction-mpm > /dev/null; ulimit -v 600000; exec $SG run a/case.toml "
+      "--set sample.grains=300 -q ";
   const ProcessResult refused = workshop.shell(line + "-o out");
   CAPTURE(refused.err);
   CHECK(refused.exit_code == 2);

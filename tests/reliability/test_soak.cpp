@@ -63,7 +63,7 @@ double resident_memory() {
 
 /// The most compressed state of a cycle.
 struct Turn {
-  double height = 0;                       // of the lid [m]
+  double height = 0;                       // of the top wall [m]
   double wall_work = 0, energy_error = 0;  // [J/m]
   double memory = 0;                       // [bytes]
   Vec<2> centre;                           // of all mass [m]
@@ -83,7 +83,7 @@ Turn turn_of(Simulation& simulation, const Whole& whole) {
 struct Drift {
   double memory = 0;              // [bytes]
   double energy = 0;              // error over the work of the walls
-  double height = 0, travel = 0;  // of lid and centre, over the height
+  double height = 0, travel = 0;  // of top wall and centre, over the height
   void add(const Turn& early, const Turn& turn) {
     memory = std::max(memory, turn.memory - early.memory);
     energy = std::max(energy, std::abs(turn.energy_error) / turn.wall_work);
@@ -114,8 +114,9 @@ void soak(const Case& c, int steps, double energy_tolerance) {
   const double momentum_error = norm(whole_of(simulation->model()).momentum - pushed) / exchanged;
   MESSAGE(c.experiment.model << ": " << steps << " steps, " << legs / 2 << " cycles, memory + "
                              << drift.memory << " bytes, momentum " << momentum_error
-                             << " of what the walls gave, energy " << drift.energy << " of their work, lid "
-                             << drift.height << ", centre " << drift.travel << " of the height");
+                             << " of what the walls gave, energy " << drift.energy
+                             << " of their work, height " << drift.height << ", centre " << drift.travel
+                             << " of the height");
   CHECK(legs > 20);
   CHECK(drift.memory < 1e6);
   CHECK(momentum_error < 1e-12);

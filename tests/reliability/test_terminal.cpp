@@ -59,7 +59,8 @@ struct TerminalRun {
   TerminalRun() {
     workshop.softgrain({"new", "a", "--template", "compaction-mpm"});
     workshop.file("go", "exec " SOFTGRAIN_PROGRAM
-                        " run a/case.toml -o out --resume --set mpm.cells=8 --set output.vtk=false\n");
+                        " run a/case.toml -o out --resume --set sample.grains=300 --set mpm.cells=8 --set "
+                        "output.vtk=false\n");
   }
   /// Begins, or goes on; the number of the process.
   pid_t start() const {

@@ -76,7 +76,7 @@ TEST_CASE("a free grain stays at rest, whole and in shape") {
   CHECK(norm(momentum) < 1e-12);
 }
 
-TEST_CASE("a grain between plates yields at a fraction of its cohesive pressure, whole, and lets go") {
+TEST_CASE("a grain between walls yields at a fraction of its cohesive pressure, whole, and lets go") {
   Case c;
   c.bpm.primaries = 300;
   c.loading = {.wall_velocity = 0.1, .max_strain = 0.065, .unload_at = {0.06}, .unload_by = 0.04};
@@ -105,7 +105,7 @@ TEST_CASE("a grain between plates yields at a fraction of its cohesive pressure,
   CHECK(difference < 0.2 * top);
   CHECK(yield / yield_rows > 0.1 * row["sigma_I"]);
   CHECK(yield / yield_rows < 0.3 * row["sigma_I"]);
-  // the plate leaves the grain while it still moves up; large primaries give back more than small ones
+  // the wall leaves the grain while it still moves up; large primaries give back more than small ones
   CHECK(strain_of_release > 0.06 - 0.035);
   CHECK(row["dissipation"] > 0);
 }

@@ -10,6 +10,7 @@
 #include "softgrain/soft/equilibrium.hpp"
 #include "softgrain/soft/explicit_step.hpp"
 #include "softgrain/soft/implicit_step.hpp"
+#include "softgrain/soft/point_states.hpp"
 #include "support/soft_grains.hpp"
 
 using namespace softgrain;

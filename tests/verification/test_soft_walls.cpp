@@ -136,12 +136,12 @@ double turned(const SoftGrains& grains, const SoftGrains& from) {
   return std::atan2(across, along) * 180 / pi;
 }
 
-/// The most that a grain turns between frictionless plates that close at `speed`, to a strain of 0.35.
+/// The most that a grain turns between frictionless walls that close at `speed`, to a strain of 0.35.
 template <class Dynamics>
 double most_turned(const SoftGrains& grain, double speed, double dt) {
-  const std::vector<Wall<2>> plates{{.point = {0, 0}, .normal = {0, 1}, .velocity = {0, speed / 2}},
-                                    {.point = {0, 2 * R}, .normal = {0, -1}, .velocity = {0, -speed / 2}}};
-  Dynamics dynamics(grain, plates, {});
+  const std::vector<Wall<2>> walls{{.point = {0, 0}, .normal = {0, 1}, .velocity = {0, speed / 2}},
+                                   {.point = {0, 2 * R}, .normal = {0, -1}, .velocity = {0, -speed / 2}}};
+  Dynamics dynamics(grain, walls, {});
   double most = 0;
   for (double time = 0; time < 0.35 * 2 * R / speed; time += dt) {
     dynamics.step(dt);
@@ -152,7 +152,7 @@ double most_turned(const SoftGrains& grain, double speed, double dt) {
 
 }  // namespace
 
-TEST_CASE("a grain between frictionless plates does not turn by itself, at any angle") {
+TEST_CASE("a grain between frictionless walls does not turn by itself, at any angle") {
   for (const int cells : {8, 16})
     for (const double share : {0.0, 0.27}) {  // of a segment
       CAPTURE(cells);

@@ -60,8 +60,8 @@ double stress_noise(ShapeFunction shape) {
 
 constexpr double R = 5e-3, E = 1e7, nu = 0.45, rho = 990;
 
-/// Force over E* R at the approaches d/R of the centre to one plate, means over 5 % of d on both sides and
-/// over both plates; the top plate comes down at `speed`.
+/// Force over E* R at the approaches d/R of the centre to one wall, means over 5 % of d on both sides and
+/// over both walls; the top wall comes down at `speed`.
 std::vector<double> force_at(const Choice& choice, double cell, double speed,
                              const std::vector<double>& approach) {
   PointGrain grain = disk_of_points(R, {}, cell, 64);
@@ -88,7 +88,7 @@ std::vector<double> force_at(const Choice& choice, double cell, double speed,
   return force;
 }
 
-/// Distance of a plate from a grain at rest when force first acts, in cells; the grain lies `offset` cells
+/// Distance of a wall from a grain at rest when force first acts, in cells; the grain lies `offset` cells
 /// above a node.
 double first_force(const Choice& choice, double offset, double wall_reach = -1) {
   const double cell = 0.118 * R;
@@ -123,7 +123,7 @@ TEST_CASE("a vibrating grain of points that flies across ten cells feels them: s
   CHECK(bspline < 0.3 * bilinear);
 }
 
-TEST_CASE("the force of a plate begins at the outline, on nodes one to two cells early") {
+TEST_CASE("the force of a wall begins at the outline, on nodes one to two cells early") {
   for (const Choice& choice : choices) {
     CAPTURE(choice.name);
     const auto [least, largest] = gap_range(choice);
@@ -145,7 +145,7 @@ TEST_CASE("the force of a plate begins at the outline, on nodes one to two cells
 }
 
 TEST_CASE(
-    "a grain of points between plates: smooth shapes with outlines are right, bilinear lags, nodes lead") {
+    "a grain of points between walls: smooth shapes with outlines are right, bilinear lags, nodes lead") {
   const std::vector<double> approach{0.05, 0.1, 0.2, 0.3},
       reference{.03168, .07839, .21604, .43801};  // converged finite elements
   for (const Choice& choice : choices) {

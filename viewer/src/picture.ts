@@ -71,7 +71,7 @@ export interface ForceScale {
 
 export function forceScaleOf(run: Run): ForceScale | null {
   const forces = run.sample(25).flatMap((frame) => [...run.contacts(frame).force]);
-  // what two plates do to one grain is no chain
+  // what two walls do to one grain is no chain
   if (forces.length === 0 || (run.header.contacts_of_grains && run.grains < 2)) return null;
   const last = placesOf(run, 0);
   const area = run.hasOutlines ? quantile(run.column("grain.area", 0), 0.5) : 0;

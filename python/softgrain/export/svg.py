@@ -67,7 +67,7 @@ def _surface(snapshot, scale, place, pixels):
     for polygon, fill in zip(shapes.polygons, fills):
         stroke = colours.INK if whole else fill  # between cells no ground shines through
         yield _polygon(place(polygon), fill, stroke)
-    if not shapes.polygons:
+    if not len(shapes.polygons):
         for (x, y), radius, fill in zip(place(shapes.centres), pixels * shapes.radii, fills):
             yield f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{radius:.2f}" fill="{fill}" stroke="#c8c8c8" stroke-width="0.5"/>\n'
     if not whole:

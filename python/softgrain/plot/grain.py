@@ -23,9 +23,9 @@ def draw_grain(run, rows=ROWS):
     views = [view for view in (_view(row, snapshots) for row in rows) if view]
     grid = panel_grid([extent(snapshots[place], wall) for place in places], len(views))
     for row, view in enumerate(views):
-        for axes, place in zip(grid.axes[row], places):
-            view.draw(axes, place, grid.scale)
-            draw_walls(axes, snapshots[place], wall)
+        for panel, place in zip(grid.panels[row], places):
+            view.draw(panel, place)
+            draw_walls(panel, snapshots[place], wall)
         view.draw_key(grid, row)
         grid.add_row_name(row, view.name)
     for column, stage in enumerate(stages):

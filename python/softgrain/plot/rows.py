@@ -5,12 +5,11 @@ when they lack what it shows. To add a way: add a class, and its name to ROWS.""
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.lines import Line2D
 
 from .. import NotRecorded, colours, picture
-from .scene import draw_chains, draw_surface
+from .scene import draw_chains, draw_polygons, draw_surface
 from .style import GREY, PALE, POINT
 
 
@@ -38,10 +37,10 @@ class Pressure:
             raise NotRecorded("no pressure")
         self.range = colours.range_of(np.concatenate(known))
 
-    def draw(self, axes, index, _millimetres_per_metre):
+    def draw(self, panel, index):
         surface = self.surfaces[index]
         unknown = np.isnan(surface.values).all()
-        draw_surface(axes, surface, PALE if unknown else self.range.rgb(surface.values))
+        draw_surface(panel, surface, PALE if unknown else self.range.rgb(surface.values))
 
     @staticmethod
     def _surface(snapshot):
@@ -71,10 +70,10 @@ class Forces:
             raise NotRecorded("what two walls do to one grain is no chain")
         self.scale = picture.force_scale(snapshots)
 
-    def draw(self, axes, index, millimetres_per_metre):
+    def draw(self, panel, index):
         snapshot = self.snapshots[index]
-        draw_surface(axes, picture.bodies(snapshot), PALE)
-        draw_chains(axes, picture.chains(snapshot, self.scale), colours.CHAINS, millimetres_per_metre)
+        draw_surface(panel, picture.bodies(snapshot), PALE)
+        draw_chains(panel, picture.chains(snapshot, self.scale), colours.CHAINS)
 
     def draw_key(self, grid, row):
         axes = grid.add_key_axes(row, width=14, height=0.7)
@@ -110,13 +109,13 @@ class Layers:
         share = (height - height.min()) / (np.ptp(height) or 1)
         self.layer = np.minimum((share * count).astype(int), count - 1)
 
-    def draw(self, axes, index, _millimetres_per_metre):
+    def draw(self, panel, index):
         snapshot = self.snapshots[index]
         if self.of_grains:
             shapes = picture.grains(snapshot, self.layer)
         else:
             shapes = picture.surface(snapshot, self.layer.astype(float))
-        draw_surface(axes, shapes, self.colours[np.rint(shapes.values).astype(int) % 2])
+        draw_surface(panel, shapes, self.colours[np.rint(shapes.values).astype(int) % 2])
 
     draw_key = _draw_scale_bar
 
@@ -134,9 +133,9 @@ class Cells:
         if any(cells is None for cells in self.cells):
             raise NotRecorded("points that are in no cells")
 
-    def draw(self, axes, index, _millimetres_per_metre):
-        draw_surface(axes, picture.bodies(self.snapshots[index]), PALE)
-        axes.add_collection(PolyCollection(self.cells[index], facecolors="none", edgecolors=GREY, linewidths=0.25))
+    def draw(self, panel, index):
+        draw_surface(panel, picture.bodies(self.snapshots[index]), PALE)
+        draw_polygons(panel, self.cells[index], facecolors="none", edgecolors=GREY, linewidths=0.25)
 
     draw_key = _draw_scale_bar
 

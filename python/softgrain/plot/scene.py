@@ -1,4 +1,4 @@
-"""The pieces of `softgrain.picture`, drawn into axes of Matplotlib."""
+"""The pieces of `softgrain.picture`, drawn into a panel of a Matplotlib figure."""
 
 import numpy as np
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
@@ -7,39 +7,41 @@ from .. import picture
 from .style import INK, POINT
 
 MOST_VECTORS = 3000  # polygons or disks of a panel; more are pixels also in SVG and PDF: 30 000 would take 20 MB
-
-
 RIM = "#C8C8C8"  # of disks: a pressure of zero may be as white as the paper
 
 
-def draw_surface(axes, surface, colours):
+def draw_surface(panel, surface, colours):
     """Polygons or disks, filled; `colours` is one colour or one row for each. Then the rims over them."""
     many = dict(rasterized=len(surface.values) > MOST_VECTORS)
     if len(surface.polygons) == len(surface.rims) > 0:  # whole grains carry their own rims
         rim = 0.3 if len(surface.rims) < 100 else 0.15  # thin enough for chains to be seen over many
-        axes.add_collection(PolyCollection(surface.polygons, facecolors=colours, edgecolors=INK, linewidths=rim))
+        draw_polygons(panel, surface.polygons, facecolors=colours, edgecolors=INK, linewidths=rim)
         return
-    if surface.polygons:
-        axes.add_collection(PolyCollection(surface.polygons, facecolors=colours, edgecolors="face", linewidths=0.15, **many))
+    if len(surface.polygons):
+        draw_polygons(panel, surface.polygons, facecolors=colours, edgecolors="face", linewidths=0.15, **many)
     else:
-        diameter = 2 * surface.radii
-        axes.add_collection(EllipseCollection(diameter, diameter, np.zeros_like(diameter), units="xy", facecolors=colours,
-                                              edgecolors=RIM, linewidths=0.15, offsets=surface.centres,
-                                              offset_transform=axes.transData, **many))
+        diameter = 2 * surface.radii * panel.scale
+        panel.add(EllipseCollection(diameter, diameter, np.zeros_like(diameter), units="xy", facecolors=colours,
+                                    edgecolors=RIM, linewidths=0.15, offsets=surface.centres,
+                                    offset_transform=panel.transform, **many))
     if surface.rims:
-        axes.add_collection(PolyCollection(surface.rims, facecolors="none", edgecolors=INK, linewidths=0.4))
+        draw_polygons(panel, surface.rims, facecolors="none", edgecolors=INK, linewidths=0.4)
 
 
-def draw_chains(axes, chains, colour, millimetres_per_metre):
+def draw_polygons(panel, polygons, **look):
+    panel.add(PolyCollection(polygons, transform=panel.transform, **look))
+
+
+def draw_chains(panel, chains, colour):
     """Segments as wide as `chains` says, at the scale of the panel."""
     if len(chains.widths) == 0:
         return
-    axes.add_collection(LineCollection(chains.segments, linewidths=chains.widths * millimetres_per_metre / POINT,
-                                       colors=colour, alpha=chains.opacities, capstyle="round",
-                                       rasterized=len(chains.widths) > MOST_VECTORS))
+    panel.add(LineCollection(chains.segments, linewidths=chains.widths * panel.scale / POINT, colors=colour,
+                             alpha=chains.opacities, capstyle="round", rasterized=len(chains.widths) > MOST_VECTORS,
+                             transform=panel.transform))
 
 
-def draw_walls(axes, snapshot, thickness):
+def draw_walls(panel, snapshot, thickness):
     """A bar along each wall, on the side away from the particles."""
     centre = snapshot.particles["position"].mean(axis=0)
     bars = []
@@ -47,7 +49,7 @@ def draw_walls(axes, snapshot, thickness):
         normal = np.array([start[1] - end[1], end[0] - start[0]]) / np.hypot(*(end - start))
         away = normal * np.sign(normal @ (start - centre))
         bars.append([start, end, end + thickness * away, start + thickness * away])
-    axes.add_collection(PolyCollection(bars, facecolors=INK, edgecolors="none"))
+    draw_polygons(panel, bars, facecolors=INK, edgecolors="none")
 
 
 def extent(snapshot, margin):

@@ -24,6 +24,7 @@ STYLE = {
     "font.size": 8,
     "axes.labelsize": 8,
     "axes.titlesize": 8,
+    "axes.titley": 1.0,  # no figure has a title above its axes; to look for a place for one costs a quarter of the drawing
     "xtick.labelsize": 7,
     "ytick.labelsize": 7,
     "legend.fontsize": 7,
@@ -73,7 +74,8 @@ def save(figure, path, runs, dpi=300):
         ".svg": {"Creator": made_by, "Source": source, "Date": None},
         ".pdf": {"Creator": made_by, "Subject": source, "Producer": None, "CreationDate": None},
     }
-    figure.savefig(path, dpi=dpi, metadata=metadata[path.suffix])
+    compression = {"pil_kwargs": {"compress_level": 3}} if path.suffix == ".png" else {}  # 6 takes twice the time for 1 %
+    figure.savefig(path, dpi=dpi, metadata=metadata[path.suffix], **compression)
 
 
 def provenance(runs):

@@ -6,7 +6,7 @@ from .. import measure
 
 
 def johnson_force(approach):
-    """x = F/(E* R) of Johnson's line contact (1985): d/R = x/pi (ln(4 pi/x) - 1), d the approach to one plate."""
+    """x = F/(E* R) of Johnson's line contact (1985): d/R = x/pi (ln(4 pi/x) - 1), d the approach to one wall."""
     x = np.linspace(1e-9, 1.5, 20001)
     return np.interp(approach, x / np.pi * (np.log(4 * np.pi / x) - 1), x)
 

@@ -80,7 +80,7 @@ double separate_grains(BpmSample& sample, const BoxSample& box) {
   constexpr int most_passes = 5000;
   for (int pass = 0; push_apart(sample.particles, shift, widest) > tolerance; ++pass)
     require(pass < most_passes,
-            "no places without overlap for {} grains of primaries; use a smaller sample.packing_fraction",
+            "could not place {} grains of primaries without overlap; use a smaller sample.packing_fraction",
             box.grains.size());
   double furthest = 0;
   for (std::size_t g = 0; g < shift.size(); ++g)

@@ -124,23 +124,4 @@ class NesterovIteration {
   int iterations_ = 0;
 };
 
-/// Solves as solve_nlgs does, and with its contract, by NesterovIteration; a sweep is an iteration. Several
-/// times fewer of them below a tolerance of about 1e-4. Allocates its vectors once, at the start.
-template <int Dim, ContactSystem<Dim> System>
-SolverReport solve_nesterov(System& system, std::span<Vec<Dim>> impulse, std::span<const double> friction,
-                            const SolverOptions& options) {
-  const double scale =
-      options.velocity_scale > 0 ? options.velocity_scale : typical_velocity<Dim>(system, impulse);
-  NesterovIteration<Dim, System> iteration(system, impulse, friction);
-  SolverReport report = report_of(iteration.violation(), 0, scale, options);
-  for (int sweep = 1; sweep <= options.max_sweeps; ++sweep) {
-    if (report.converged && sweep > options.min_sweeps) break;
-    iteration.advance();
-    if (sweep % options.check_every != 0 && sweep != options.max_sweeps) continue;
-    report = report_of(iteration.violation(), sweep, scale, options);
-    if (!std::isfinite(report.residual_mean)) break;
-  }
-  return report;
-}
-
 }  // namespace softgrain

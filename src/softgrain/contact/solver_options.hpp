@@ -9,7 +9,7 @@ struct SolverOptions {
   double tolerance = 1e-4;    ///< on the mean velocity violation, in units of velocity_scale
   double worst_factor = 16;   ///< the worst contact may be this many times worse (as LMGC90's QM/16)
   double velocity_scale = 0;  ///< [m/s]; for particles: diameter / time step, so that the violation is the
-                              ///< penetration gained in a step over a diameter. 0: rms of u_c - W_cc p_c at
+                              ///< overlap gained in a step over a diameter. 0: rms of u_c - W_cc p_c at
                               ///< the start, which from p = 0 is q.
   double relaxation = 1;      ///< omega of p <- p + omega (p_new - p), in (0, 2) without friction
   int check_every = 10;  ///< iterations of Nesterov's method between two looks at the violation; NLGS sees

@@ -15,7 +15,7 @@ struct Advice {
   /// the material's own, E or sigma_I = F0/<a0>.
   double stress = 0;
   /// I = |d eps/dt| d sqrt(rho/p) at p = stress, with the rate at the start and the mean diameter; for one
-  /// grain between plates v sqrt(rho/p). Loading is quasi-static below 1e-3.
+  /// grain between walls v sqrt(rho/p). Loading is quasi-static below 1e-3.
   double inertial_number = 0;
   /// rho c v over the yield stress, v the speed of the walls, of grains that flow: the stress of a blow with
   /// that speed. Below 0.1 the grains are pressed, from 1 on they are struck. 0 where nothing yields.

@@ -20,14 +20,14 @@ constexpr double paper_step = 0.25e-6;
 /// A wall moves at most this share of the radius of the smallest primary in a step.
 constexpr double wall_share = 0.01;
 
-bool between_plates(const Case& c) { return c.experiment.loading == LoadingPath::diametral; }
+bool between_walls(const Case& c) { return c.experiment.loading == LoadingPath::diametral; }
 
 /// Radius and mass of the smallest primary of the smallest grain.
 struct SmallestPrimary {
   double radius, mass;  // [m], [kg/m]
 
   explicit SmallestPrimary(const Case& c) {
-    const double R = between_plates(c) ? c.grain.radius : c.sample.smallest_diameter / 2;
+    const double R = between_walls(c) ? c.grain.radius : c.sample.smallest_diameter / 2;
     // diameters uniform from d to s d: <d^2>/d^2
     const double s = c.bpm.size_ratio, mean_square = (1 + s + s * s) / 3;
     const double share = 1 / (c.bpm.primaries * mean_square);  // of all primaries' area
@@ -41,7 +41,7 @@ struct SmallestPrimary {
 double bond_period(const Case& c) {
   const SmallestPrimary smallest(c);
   const double mean_a0 = smallest.radius * (1 + c.bpm.size_ratio);
-  const double F0 = between_plates(c) ? c.bpm.attraction : c.bpm.cohesive_pressure * mean_a0;
+  const double F0 = between_walls(c) ? c.bpm.attraction : c.bpm.cohesive_pressure * mean_a0;
   const double a0 = 2 * smallest.radius;
   return 2 * std::numbers::pi * std::sqrt(smallest.mass * a0 / (2 * c.bpm.exponent * F0));
 }

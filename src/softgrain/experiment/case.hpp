@@ -15,8 +15,8 @@ namespace softgrain {
 // The choices of a case. Their words in case files: io/case/words.hpp.
 
 enum class LoadingPath {
-  diametral,   ///< one grain between two plates, the top one moves
-  compaction,  ///< grains in a box whose lid comes down
+  diametral,   ///< one grain between two walls, the top one moves
+  compaction,  ///< grains in a box whose top wall comes down
   isotropic,   ///< grains in a box whose four walls come in
 };
 enum class GrainModel { bpm, mpm };         ///< bonded rigid primaries, an elastic body
@@ -43,7 +43,7 @@ struct Case {
   struct Bpm {
     int primaries = 1750;              ///< rigid primary particles in a grain
     double size_ratio = 1.625;         ///< largest over smallest primary diameter (paper: 0.26 mm / 0.16 mm)
-    double attraction = 100;           ///< F0 of a grain between plates [N/m]
+    double attraction = 100;           ///< F0 of a grain between walls [N/m]
     double cohesive_pressure = 0.5e6;  ///< sigma_I = F0/<a0> of each grain of a packing [Pa]
     double exponent = 7;               ///< gamma [-]
     double inner_friction = 0;         ///< mu between the primaries of a grain
@@ -74,21 +74,21 @@ struct Case {
   struct Solver {
     int min_sweeps = 10;
     int max_sweeps = 50;
-    double tolerance = 1e-5;  ///< mean penetration gained in a step over the mean primary diameter
+    double tolerance = 1e-5;  ///< mean overlap gained in a step over the mean primary diameter
     double relaxation = 1.4;  ///< omega
     Precision precision = Precision::single;  ///< of the sweeps
   } solver;
 
   struct Loading {
-    double wall_velocity = 0.2;       ///< of the top plate; of opposite walls towards each other [m/s]
+    double wall_velocity = 0.2;       ///< of the top wall; of opposite walls towards each other [m/s]
     double max_strain = 0.35;         ///< strain at the end of loading
     double max_packing_fraction = 0;  ///< Phi_0 at the end, of grains in a box; 0: as max_strain says
     double max_stress = 0;            ///< sigma at the end, of grains in a box [Pa]; 0: any
     double max_overlap = 0;           ///< mean, of primaries over their radius, at the end, in a box; 0: any
-    std::vector<double> unload_at{};  ///< strains at which the plate turns back
+    std::vector<double> unload_at{};  ///< strains at which the wall turns back
     double unload_by = 0.015;         ///< strain given back before loading again
-    double hold = 0;                  ///< rest of the plate at each turn and at the end [s]
-    double hold_stress = 0;           ///< sigma that the lid keeps for `hold` before the end [Pa]; 0: none
+    double hold = 0;                  ///< rest of the wall at each turn and at the end [s]
+    double hold_stress = 0;  ///< sigma that the top wall keeps for `hold` before the end [Pa]; 0: none
   } loading;
 
   struct Time {

@@ -77,13 +77,16 @@ namespace {
 /// Speed of pressure waves in an elastic grain [m/s].
 double wave_speed(const Case& c) { return std::sqrt(wave_modulus(c) / c.grain.density); }
 
-/// How much more Newton's method and the contacts take in a step that lasts s = dt c/R wave times of a grain:
-/// 20 grains took 0.33, 0.64, 2.3, 4.0 and 5.2 s at 5, 0.5, 0.1, 0.01 and 0.001 m/s, s = 0.4 to 2000; one
-/// grain between plates the same at any speed.
-double quasi_static_factor(const Case& c) {
-  if (!is_in_a_box(c)) return 4;
+/// CPU time of an implicit step for each point [s]. In a box it grows with s = dt c/R, the wave times of a
+/// grain that the step lasts, with the root of the cells and where grains are pressed beyond phi_0 = 0.95:
+/// 20 grains of 6 cells took 0.58, 1.3, 5.3 and 5.8 s to strain 0.3 at 5, 0.5, 0.01 and 0.001 m/s.
+/// One grain between walls costs the same at any speed.
+double implicit_seconds_of_point(const Case& c) {
+  if (!is_in_a_box(c)) return 5.2e-7;
   const double s = first_time_step(c) * wave_speed(c) / smallest_radius(c);
-  return 1 + 11 * s / (s + 43);
+  const double phi = c.sample.packing_fraction * std::exp((is_isotropic(c) ? 2 : 1) * last_strain(c));
+  const double pressed = 1 + 4 * std::max(0.0, phi - 0.95);
+  return 1.7e-7 * (1 + 6 * s / (s + 20)) * std::sqrt(c.mpm.cells / 6.0) * pressed;
 }
 
 /// How much more grains that flow take: fresh tangents in more iterations; a return to the yield surface.
@@ -102,7 +105,7 @@ double seconds_of_step(const Case& c, const Estimate& e) {
                       : is_implicit(c)               ? flow_factor_implicit
                                                      : flow_factor_explicit;
   return batches * 8 * e.particles / grains(c) * flow *
-         (is_implicit(c) ? 1.3e-7 * quasi_static_factor(c) : 5.5e-9);
+         (is_implicit(c) ? implicit_seconds_of_point(c) : 5.5e-9);
 }
 
 /// CPU time of all rows of series.csv [s]: in a box each looks at every grain, whose outline must be found if

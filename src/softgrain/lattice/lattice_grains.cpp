@@ -34,8 +34,8 @@ StepReport LatticeGrains::step(Box<2>& box, double dt) {
           .residual_mean = soft.residual_mean,
           .residual_max = soft.residual,
           .residual_limit = dynamics_.options.solver.worst_factor * dynamics_.options.solver.tolerance,
-          .overlap_mean = soft.penetration_mean,
-          .overlap_max = soft.penetration_max,
+          .overlap_mean = soft.overlap_mean,
+          .overlap_max = soft.overlap_max,
           .converged = soft.converged};
 }
 

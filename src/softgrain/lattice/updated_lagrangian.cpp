@@ -28,11 +28,11 @@ auto with_elastic(const AnyLaw& law, Visit&& visit) {
 }  // namespace
 
 UpdatedLagrangianDynamics::UpdatedLagrangianDynamics(std::vector<PointGrain> point_grains,
-                                                     std::vector<Wall<2>> plates, AnyLaw material,
+                                                     std::vector<Wall<2>> box_walls, AnyLaw material,
                                                      double mass_density,
                                                      const UpdatedLagrangianOptions& lagrangian_options)
     : grains(std::move(point_grains)),
-      walls(std::move(plates)),
+      walls(std::move(box_walls)),
       law(material),
       density(mass_density),
       options(lagrangian_options),
@@ -268,11 +268,11 @@ SoftStepReport UpdatedLagrangianDynamics::report_of(const SolverReport& solved) 
     if (contact.vertex >= 0) {
       const Vec<2>& x = grains[contact.grain].outline[contact.vertex];
       const double depth = std::max(0.0, -dot(x - walls[contact.wall].point, contact.normal));
-      report.penetration_max = std::max(report.penetration_max, depth / smallest_radius_);
-      report.penetration_mean += depth / smallest_radius_;
+      report.overlap_max = std::max(report.overlap_max, depth / smallest_radius_);
+      report.overlap_mean += depth / smallest_radius_;
     }
   }
-  if (report.contacts > 0) report.penetration_mean /= report.contacts;
+  if (report.contacts > 0) report.overlap_mean /= report.contacts;
   return report;
 }
 

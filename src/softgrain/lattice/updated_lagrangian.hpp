@@ -36,7 +36,7 @@ struct UpdatedLagrangianOptions {
 class UpdatedLagrangianDynamics {
  public:
   /// Raises UsageError if there is no grain, or an option is out of range.
-  UpdatedLagrangianDynamics(std::vector<PointGrain> point_grains, std::vector<Wall<2>> plates,
+  UpdatedLagrangianDynamics(std::vector<PointGrain> point_grains, std::vector<Wall<2>> box_walls,
                             AnyLaw material, double mass_density,
                             const UpdatedLagrangianOptions& lagrangian_options);
 

@@ -43,12 +43,8 @@ inline Wide operator*(const Wide& a, const Wide& b) { return {a.low * b.low, a.h
 inline Wide operator/(const Wide& a, const Wide& b) { return {a.low / b.low, a.high / b.high}; }
 inline Wide operator-(const Wide& a) { return {-a.low, -a.high}; }
 
-/// Eight consecutive doubles from memory, and back; without alignment.
+/// Eight consecutive doubles from memory, without alignment.
 inline Wide load_wide(const double* from) { return {load_lanes(from), load_lanes(from + lane_count)}; }
-inline void store_wide(const Wide& value, double* to) {
-  std::memcpy(to, &value.low, sizeof value.low);
-  std::memcpy(to + lane_count, &value.high, sizeof value.high);
-}
 
 /// What a comparison says of each lane. For double it is a bool.
 struct WideMask {

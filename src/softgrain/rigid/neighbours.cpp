@@ -123,7 +123,7 @@ void take_between(NeighbourReference<Dim>& reference, const RigidParticles<Dim>&
   find_close_grains(reference, particles);
 }
 
-/// The part of a reference that its positions do not say.
+/// Fields of a reference that follow from no stored position.
 template <int Dim>
 void start_lists(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
   reference.grains = grain_ranges(particles);
@@ -160,13 +160,6 @@ void detect_four(const RigidParticles<2>& particles, int c, RigidContacts<2>& co
 }
 
 }  // namespace
-
-template <int Dim>
-bool needs_rebuild(const NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
-  if (reference.position.size() != particles.position.size()) return true;
-  const std::vector<double> stale = staleness(reference, particles);
-  return std::any_of(stale.begin(), stale.end(), [](double s) { return !(s <= 1); });
-}
 
 template <int Dim>
 bool renew_stale_lists(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
@@ -231,12 +224,10 @@ void detect_contacts(const RigidParticles<Dim>& particles, int begin, int end, R
   for (; c < end; ++c) detect_contact(particles, c, contacts);
 }
 
-template bool needs_rebuild<2>(const NeighbourReference<2>&, const RigidParticles<2>&);
 template bool renew_stale_lists<2>(NeighbourReference<2>&, const RigidParticles<2>&);
 template void set_reference<2>(NeighbourReference<2>&, const RigidParticles<2>&);
 template void restore_reference<2>(NeighbourReference<2>&, const RigidParticles<2>&, std::vector<Vec<2>>,
                                    std::vector<Vec<2>>, std::vector<Vec<2>>);
-template bool needs_rebuild<3>(const NeighbourReference<3>&, const RigidParticles<3>&);
 template bool renew_stale_lists<3>(NeighbourReference<3>&, const RigidParticles<3>&);
 template void set_reference<3>(NeighbourReference<3>&, const RigidParticles<3>&);
 template void restore_reference<3>(NeighbourReference<3>&, const RigidParticles<3>&, std::vector<Vec<3>>,

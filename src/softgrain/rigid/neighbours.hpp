@@ -37,15 +37,11 @@ struct NeighbourReference {
   int between_list() const { return static_cast<int>(grains.size()); }
 };
 
-/// True if some pair might be missing. Grains that move as a whole stay where they are for their own
+/// Takes the present positions as reference of the lists that might miss a pair, and of those more than half
+/// way there. False if no list might miss one. Grains that move as a whole stay where they are for their own
 /// particles: with D the mean displacement of a grain since a reference and d the largest of a particle
 /// about it, two particles of one grain have approached by at most 2 d, those of two by d + d' + |D - D'|,
 /// which may reach 90 % of the skin.
-template <int Dim>
-bool needs_rebuild(const NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles);
-
-/// Takes the present positions as reference of the lists that might miss a pair, and of those more than half
-/// way there. False if there is none.
 template <int Dim>
 bool renew_stale_lists(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles);
 

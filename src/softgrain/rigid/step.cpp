@@ -20,10 +20,11 @@ RigidDynamics<Dim>::RigidDynamics(RigidParticles<Dim> bodies, FrictionRule frict
   require(law.restitution >= 0 && law.restitution <= 1, "restitution must be in [0, 1], got {}",
           law.restitution);
   require(law.push_out >= 0 && law.push_out <= 1, "push-out must be in [0, 1], got {}", law.push_out);
-  require(law.restitution == 0 || law.activation != Activation::anticipated,
-          "restitution {} needs contacts that are active only when closed: anticipation would stop the "
-          "particles before they touch",
-          law.restitution);
+  require(
+      law.restitution == 0 || law.activation != Activation::anticipated,
+      "contact.restitution = {} requires contact.activation = \"closed_at_mid_step\": an anticipated contact "
+      "stops the particles before they touch",
+      law.restitution);
   require(skin > 0, "skin must be > 0, got {} m", skin);
   reference.skin = skin;
   if (particles.size() > 0)

@@ -20,7 +20,7 @@ using ForceField = std::function<void(const RigidParticles<Dim>&, std::span<Vec<
 
 struct RigidStepOptions {
   SolverOptions
-      solver;  ///< velocity_scale 0: 2 <R> / dt, so that the tolerance is penetration per step over diameter
+      solver;  ///< velocity_scale 0: 2 <R> / dt, so that the tolerance is overlap per step over diameter
   ContactLaw law;
   Precision precision = Precision::full;  ///< of the sweeps, in the plane
 };

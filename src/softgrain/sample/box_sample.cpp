@@ -125,12 +125,11 @@ BoxSample sample_box(const BoxSampleOptions& options) {
   if (has_room(sample, options.clearance) && place(sample, options, options.clearance, 0, most_passes))
     return sample;
   if (std::optional<BoxSample> found = search(options, clearance_shares, 40)) return *found;
-  throw UsageError(
-      fmt::format("sample.packing_fraction = {}: no places without overlap for sample.grains = {} in a box "
-                  "of aspect {}; the "
-                  "largest fraction found for them is {:.2f}: use that or less{}",
-                  options.packing_fraction, options.grains, options.aspect, largest_packing_fraction(options),
-                  options.grains < 50 ? ", or more grains" : ""));
+  throw UsageError(fmt::format(
+      "sample.packing_fraction = {}: could not place sample.grains = {} without overlap in a box of "
+      "aspect {}; the largest fraction found for them is {:.2f}: use that or less{}",
+      options.packing_fraction, options.grains, options.aspect, largest_packing_fraction(options),
+      options.grains < 50 ? ", or more grains" : ""));
 }
 
 double largest_packing_fraction(const BoxSampleOptions& options) {

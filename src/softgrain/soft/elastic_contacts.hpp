@@ -26,7 +26,7 @@ struct ElasticScratch {
 /// impulse sees the implicit operator, condensed grain by grain on the vertices that take part in contacts.
 /// Velocities are those over the step, with v = du/dt:
 ///   u_n = g/dt + n . (v_slave - v_master),   u_t = slip/dt + t . (v_slave - v_master),
-/// so that u_n >= 0 is "no penetration at the end of the step".
+/// so that u_n >= 0 is "no overlap at the end of the step".
 class ElasticContacts {
  public:
   /// increment: (outline vertices) du without contact forces [m]. compliance: one for each batch of the

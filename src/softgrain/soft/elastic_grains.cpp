@@ -69,8 +69,8 @@ StepReport ElasticGrains<Dynamics>::step(Box<2>& box, double dt) {
           .residual_mean = soft.residual_mean > 0 ? soft.residual_mean : soft.residual,
           .residual_max = soft.residual,
           .residual_limit = residual_limit(dynamics_.options),
-          .overlap_mean = soft.penetration_mean,
-          .overlap_max = soft.penetration_max,
+          .overlap_mean = soft.overlap_mean,
+          .overlap_max = soft.overlap_max,
           .converged = soft.converged};
 }
 

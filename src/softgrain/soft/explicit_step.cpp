@@ -35,9 +35,9 @@ Vec<2> lane_of(const Vec<2, Wide>& v, int lane) { return {v[0][lane], v[1][lane]
 
 }  // namespace
 
-ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
+ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> box_walls,
                                    const ExplicitOptions& explicit_options)
-    : grains(std::move(soft_grains)), walls(std::move(plates)), options(explicit_options) {
+    : grains(std::move(soft_grains)), walls(std::move(box_walls)), options(explicit_options) {
   require(grains.size() > 0, "there is no grain");
   require(options.damping >= 0, "damping must be >= 0, got {} 1/s", options.damping);
   require(options.friction >= 0 && options.wall_friction >= 0, "friction must be >= 0, got {} and {}",
@@ -128,7 +128,7 @@ void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
   report.residual = std::max(report.residual, solved.residual_max);
   report.converged = report.converged && solved.converged;
   report.contacts = static_cast<int>(std::ranges::count_if(impulse, [](auto& p) { return p[0] != 0; }));
-  add_penetration(report);
+  add_overlaps(report);
 }
 
 /// Of grains that frictionless walls alone touch: what they gave in the step before.
@@ -238,7 +238,7 @@ void ExplicitDynamics::add_flow() {
 }
 
 /// Of the contacts that carry impulse, over the smallest radius.
-void ExplicitDynamics::add_penetration(SoftStepReport& report) const {
+void ExplicitDynamics::add_overlaps(SoftStepReport& report) const {
   const int count = static_cast<int>(contacts.size());
   struct Depths {
     double deepest = 0, sum = 0;
@@ -260,8 +260,8 @@ void ExplicitDynamics::add_penetration(SoftStepReport& report) const {
     all.sum += part.sum;
     all.carrying += part.carrying;
   }
-  report.penetration_max = std::max(report.penetration_max, all.deepest / smallest_radius_);
-  report.penetration_mean = all.carrying > 0 ? all.sum / all.carrying / smallest_radius_ : 0;
+  report.overlap_max = std::max(report.overlap_max, all.deepest / smallest_radius_);
+  report.overlap_mean = all.carrying > 0 ? all.sum / all.carrying / smallest_radius_ : 0;
 }
 
 void ExplicitDynamics::add_contact_work(double dt) {

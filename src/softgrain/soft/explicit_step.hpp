@@ -42,7 +42,7 @@ struct StableStep {
 /// with g(x+) linear about x + dt v: at x itself, sliding along an edge would drive vertices into it.
 class ExplicitDynamics {
  public:
-  ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
+  ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> box_walls,
                    const ExplicitOptions& explicit_options);
 
   /// One step of dt, in equal sub-steps of at most longest_stable_step: cells are looked at again every so
@@ -86,7 +86,7 @@ class ExplicitDynamics {
   void drift_outline(double dt);
   void add_flow();
   void add_contact_work(double dt);
-  void add_penetration(SoftStepReport& report) const;
+  void add_overlaps(SoftStepReport& report) const;
 
   double mean_radius_ = 0, smallest_radius_ = 0;
   OutlineNeighbours neighbours_;

@@ -38,9 +38,9 @@ constexpr double shortest_step = 1.0 / 64;
 
 }  // namespace
 
-ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
+ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> box_walls,
                                    const ImplicitOptions& implicit_options)
-    : grains(std::move(soft_grains)), walls(std::move(plates)), options(implicit_options) {
+    : grains(std::move(soft_grains)), walls(std::move(box_walls)), options(implicit_options) {
   require(grains.size() > 0, "there is no grain");
   require(options.friction >= 0 && options.wall_friction >= 0, "friction must be >= 0, got {} and {}",
           options.friction, options.wall_friction);
@@ -98,10 +98,11 @@ void ImplicitDynamics::give_up(Failure failure, double dt) const {
                       : failure == Failure::too_far           ? "a motion is larger than half a radius"
                       : failure == Failure::too_deep          ? "a contact stays too deep"
                                                               : "Newton's method does not converge";
-  throw NumericalError(fmt::format(
-      "no step of soft grains down to dt = {:.3g} s, {:.3g} of the explicit one: {} in grain {}; use a finer "
-      "grid or a larger tolerance, or load less far",
-      dt, dt / explicit_step_, cause, failed_grain_));
+  throw NumericalError(
+      fmt::format("the implicit step failed even at dt = {:.3g} s, {:.3g} of the explicit step: {} in grain "
+                  "{}; use a finer "
+                  "grid (mpm.cells) or a larger mpm.tolerance, or end at a smaller strain",
+                  dt, dt / explicit_step_, cause, failed_grain_));
 }
 
 ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& report) {
@@ -283,9 +284,9 @@ ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& re
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     report.contacts += impulse[c][0] > 0;
     if (impulse[c][0] > 0) depths += std::max(0.0, -contacts[c].gap);
-    report.penetration_max = std::max(report.penetration_max, -contacts[c].gap / smallest_radius_);
+    report.overlap_max = std::max(report.overlap_max, -contacts[c].gap / smallest_radius_);
   }
-  report.penetration_mean = report.contacts > 0 ? depths / report.contacts / smallest_radius_ : 0;
+  report.overlap_mean = report.contacts > 0 ? depths / report.contacts / smallest_radius_ : 0;
   return Failure::none;
 }
 

@@ -54,7 +54,7 @@ struct ImplicitOptions {
 /// balance is asked for apart (docs/decisions/0023).
 class ImplicitDynamics {
  public:
-  ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> plates,
+  ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> box_walls,
                    const ImplicitOptions& implicit_options);
 
   /// One step of dt; walls move by dt times their velocity. A sub-step in which Newton's method or NLGS does
@@ -72,8 +72,8 @@ class ImplicitDynamics {
   std::vector<Wall<2>> walls;
   ImplicitOptions options;
   std::vector<OutlineContact> contacts;  ///< at the end of the last step
-  std::vector<Vec<2>> impulse;           ///< theirs (p_n, p_t) [N s/m]
-  double impulse_time = 0;               ///< the (sub-)step over which they acted [s]
+  std::vector<Vec<2>> impulse;           ///< of `contacts`, (p_n, p_t) [N s/m]
+  double impulse_time = 0;               ///< the (sub-)step over which `impulse` acted [s]
   double sub_step = 0;                   ///< the longest to try next [s]; 0: the whole step
   /// Sub-steps of that length that succeeded, and how many shall before twice the length is tried
   int successes = 0, patience = 1;

@@ -14,8 +14,8 @@ namespace softgrain {
 struct SoftView {
   const SoftGrains& grains;
   std::span<const OutlineContact> contacts;
-  std::span<const Vec<2>> impulse;  ///< theirs (p_n, p_t) [N s/m] ...
-  double impulse_time = 0;          ///< ... over this time [s]
+  std::span<const Vec<2>> impulse;  ///< impulses of `contacts`, (p_n, p_t) [N s/m]
+  double impulse_time = 0;          ///< time over which the impulses acted [s]
 };
 
 /// Contacts that carry impulse. A vertex takes half of the segments beside it, and half of that where the

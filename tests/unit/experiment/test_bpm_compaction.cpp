@@ -19,7 +19,7 @@ using namespace softgrain;
 
 namespace {
 
-/// Six grains of few primaries, a fast lid.
+/// Six grains of few primaries, a fast wall.
 Case small_case() {
   Case c;
   c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::bpm};

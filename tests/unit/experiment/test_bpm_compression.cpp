@@ -12,7 +12,7 @@ using namespace softgrain;
 
 namespace {
 
-/// A small grain under a plate so fast that the lists of pairs are made again about every 80 steps.
+/// A small grain under a wall so fast that the lists of pairs are made again about every 80 steps.
 Case small_case() {
   Case c;
   c.bpm.primaries = 60;
@@ -112,7 +112,7 @@ TEST_CASE("a checkpoint of another case is refused by the array that does not fi
       doctest::Contains("no array 'wall_point' of 2 numbers a row and 2 rows: it belongs to"), IoError);
 }
 
-TEST_CASE("the plates start at the grain's lowest and highest point, and the top one follows the path") {
+TEST_CASE("the walls start at the grain's lowest and highest point, and the top one follows the path") {
   Simulation simulation = test::simulation_of(small_case());
   const auto& particles = test::bonded(simulation).particles;
   double low = 1, high = -1;
@@ -218,8 +218,8 @@ TEST_CASE("the width is that of the grain, and the scene's contacts are those of
       static_cast<double>(std::ranges::count_if(pairs, [](std::int64_t i) { return i < 60; })) - contacts;
   CHECK(pairs.size() == 2 * contacts);
   CHECK(test::value_of(row, "z_primaries") == doctest::Approx(2 * inner / 60).epsilon(1e-14));
-  CHECK(contacts > inner);  // the plates'
-  // an inner contact belongs to two primaries, one with a plate to one
+  CHECK(contacts > inner);  // the walls'
+  // an inner contact belongs to two primaries, one with a wall to one
   CHECK(std::accumulate(coordination.begin(), coordination.end(), 0.0) == contacts + inner);
 }
 
@@ -266,7 +266,7 @@ TEST_CASE("a compression that cannot be run is refused with the key and the valu
   CHECK_THROWS_AS(with([](Case& c) { c.loading.wall_velocity = 0; })(), UsageError);
 }
 
-TEST_CASE("a plate that leaves no room ends with a NumericalError that says what to change") {
+TEST_CASE("a wall that leaves no room ends with a NumericalError that says what to change") {
   Case c = small_case();
   c.loading = {.wall_velocity = 50, .max_strain = 4, .unload_at = {}};
   Simulation simulation = test::simulation_of(c);

@@ -59,7 +59,7 @@ TEST_CASE("the step follows sqrt(m a0/F0): by size, density, attraction, exponen
   CHECK(scaled([](Case& c) { c.bpm.exponent = 28; }) == doctest::Approx(0.5));
   CHECK(scaled([](Case& c) { c.bpm.primaries *= 16; }) == doctest::Approx(1.0 / 8));  // m ~ 1/N, a0 ~ N^-1/2
   CHECK(scaled([](Case& c) { c.loading.wall_velocity = 1000; }) <
-        0.01);  // the plate takes no primary by surprise
+        0.01);  // the wall takes no primary by surprise
   CHECK(scaled([](Case& c) { c.loading.hold = 1; }) == 1);
   Case half = packing();
   half.sample.smallest_diameter /= 2;
@@ -123,7 +123,7 @@ TEST_CASE(
     c.bpm.library = 1;
     c.sample.grains = 6;
     c.sample.packing_fraction = 0.6;
-    c.loading = {.wall_velocity = 2000, .max_strain = 2.9};  // the lid closes the box in a few steps
+    c.loading = {.wall_velocity = 2000, .max_strain = 2.9};  // the top wall closes the box in a few steps
     c.time.step = 0.2e-6;
     if (stops_by_overlap) c.loading.max_overlap = 0.05;
     Simulation simulation = test::simulation_of(c);

@@ -41,7 +41,7 @@ TEST_CASE("grains of few cells start without overlap and store nothing at once")
       CAPTURE(cells);
       CAPTURE(integrator);
       Case c = packing(cells, integrator);
-      c.time.step = 4e-8;  // the lid moves by nothing
+      c.time.step = 4e-8;  // the top wall moves by nothing
       const auto simulation = create_simulation(c);
       check_at_rest(c, *simulation);
       simulation->step();
@@ -75,7 +75,7 @@ TEST_CASE("grains of two cells take no more Newton iterations at the start than 
   CHECK(iterations(2) <= iterations(3));
 }
 
-TEST_CASE("a grain of any number of cells starts between plates that only touch it") {
+TEST_CASE("a grain of any number of cells starts between walls that only touch it") {
   for (const int cells : {2, 3, 4, 5, 8})
     for (const Integrator integrator : {Integrator::backward_euler, Integrator::symplectic_euler}) {
       CAPTURE(cells);

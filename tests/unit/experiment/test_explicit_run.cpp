@@ -40,7 +40,7 @@ TEST_CASE("an explicit grain is squeezed to strain 1.5 without energy from nothi
     }
     const auto end = test::next_row(*simulation);
     CHECK(value_of(end, "strain") == doctest::Approx(1.5).epsilon(0.01));
-    // the law alone: at strain 1.5 a grain between plates of 0.446 R is no thinner than their distance
+    // the law alone: at strain 1.5 a grain between walls of 0.446 R is no thinner than their distance
     CHECK(value_of(end, "elastic_energy") > 700);
     CHECK(value_of(end, "dissipation") < 0.02 * value_of(end, "wall_work"));
   }

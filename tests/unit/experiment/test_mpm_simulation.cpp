@@ -83,7 +83,7 @@ TEST_CASE(
       }
 }
 
-TEST_CASE("a packing keeps its grains' mass, and its lid ends at the strain asked for") {
+TEST_CASE("a packing keeps its grains' mass, and its top wall ends at the strain asked for") {
   const auto simulation = create_simulation(small_packing(Integrator::backward_euler));
   const auto start = test::next_row(*simulation);
   CHECK(value_of(start, "phi_0") == doctest::Approx(0.6));
@@ -98,7 +98,7 @@ TEST_CASE("a packing keeps its grains' mass, and its lid ends at the strain aske
   CHECK(value_of(end, "phi") == doctest::Approx(value_of(end, "phi_0") * value_of(end, "area_ratio")));
   CHECK(value_of(end, "area_ratio") < 1);
   CHECK(simulation->progress() == 1);
-  // what the lid's work does not find in motion and strain has been dissipated: by friction, by damping
+  // what the top wall's work does not find in motion and strain has been dissipated: by friction, by damping
   CHECK(value_of(end, "dissipation") > 0);
   CHECK(value_of(end, "dissipation") < value_of(end, "wall_work"));
 }
@@ -139,7 +139,7 @@ TEST_CASE("the mean overlap of elastic contacts is measured, and never above the
   }
 }
 
-TEST_CASE("one grain between plates starts at rest between them, and turns back where asked") {
+TEST_CASE("one grain between walls starts at rest between them, and turns back where asked") {
   const auto simulation = create_simulation(one_grain());
   const auto start = test::next_row(*simulation);
   CHECK(value_of(start, "wall_height") == doctest::Approx(2 * 5e-3));

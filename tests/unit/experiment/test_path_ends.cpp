@@ -23,7 +23,7 @@ Case case_of(LoadingPath loading, GrainModel model) {
   return c;
 }
 
-/// Strain after each leg, by the plates' distance alone.
+/// Strain after each leg, by the walls' distance alone.
 void check_ends(const Case& c) {
   CAPTURE(c.experiment.loading);
   CAPTURE(c.experiment.model);

@@ -38,7 +38,8 @@ Case packing(Integrator integrator) {
 
 }  // namespace
 
-TEST_CASE("the contacts of a scene of elastic grains carry the forces that their outlines and the lid feel") {
+TEST_CASE(
+    "the contacts of a scene of elastic grains carry the forces that their outlines and the top wall feel") {
   for (const Integrator integrator : {Integrator::backward_euler, Integrator::symplectic_euler}) {
     CAPTURE(integrator);
     const auto simulation = create_simulation(packing(integrator));
@@ -94,7 +95,7 @@ TEST_CASE("the contacts of a scene of elastic grains carry the forces that their
   }
 }
 
-TEST_CASE("one elastic grain between plates has contacts with walls 1 and 2, in both formulations") {
+TEST_CASE("one elastic grain between walls has contacts with walls 1 and 2, in both formulations") {
   for (const Formulation formulation : {Formulation::total_lagrangian, Formulation::updated_lagrangian}) {
     CAPTURE(formulation);
     Case c;
@@ -109,7 +110,7 @@ TEST_CASE("one elastic grain between plates has contacts with walls 1 and 2, in 
     const Scene scene = simulation->scene();
     CHECK(integers(scene.contacts.at("pair")) == std::vector<std::int64_t>{0, 2, 0, 1});
     const auto& normal = reals(scene.contacts.at("normal"));
-    CHECK(normal[1] == doctest::Approx(1));  // the second wall is the lid
+    CHECK(normal[1] == doctest::Approx(1));  // the second wall is the top wall
     CHECK(normal[3] == doctest::Approx(-1));
   }
 }

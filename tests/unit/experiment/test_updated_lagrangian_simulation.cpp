@@ -55,7 +55,7 @@ TEST_CASE("an updated-Lagrangian run that goes on from a checkpoint has the bits
   }
 }
 
-TEST_CASE("an updated-Lagrangian grain starts unstressed between the plates and gives back its work") {
+TEST_CASE("an updated-Lagrangian grain starts unstressed between the walls and gives back its work") {
   const auto simulation = create_simulation(one_grain());
   const auto start = test::next_row(*simulation);
   CHECK(value_of(start, "wall_height") == doctest::Approx(2 * 5e-3).epsilon(0.01));
@@ -76,7 +76,7 @@ TEST_CASE("an updated-Lagrangian grain starts unstressed between the plates and 
   CHECK(stored == doctest::Approx(value_of(end, "wall_work")).epsilon(0.2));
 }
 
-TEST_CASE("a lattice grain at rest between plates gains no energy, and its budget is accounted for") {
+TEST_CASE("a lattice grain at rest between walls gains no energy, and its budget is accounted for") {
   for (const ShapeFunction shape : {ShapeFunction::bilinear, ShapeFunction::gimp, ShapeFunction::bspline})
     for (const ContactOn contact_on : {ContactOn::outline, ContactOn::grid_nodes}) {
       CAPTURE(shape);
@@ -109,7 +109,7 @@ TEST_CASE("a lattice grain at rest between plates gains no energy, and its budge
 }
 
 TEST_CASE(
-    "the updated-Lagrangian picture shows every point and the outline, under a pressure of both plates") {
+    "the updated-Lagrangian picture shows every point and the outline, under a pressure of both walls") {
   const auto simulation = create_simulation(one_grain());
   advance(*simulation, simulation->steps_planned() / 2);
   const Scene scene = simulation->scene();
@@ -131,7 +131,7 @@ TEST_CASE(
   CHECK(bottom > 0);
 }
 
-TEST_CASE("the updated Lagrangian takes one grain between plates only") {
+TEST_CASE("the updated Lagrangian takes one grain between walls only") {
   Case c = one_grain();
   c.experiment.loading = LoadingPath::compaction;
   CHECK_THROWS_AS(create_simulation(c), UsageError);

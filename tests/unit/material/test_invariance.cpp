@@ -99,9 +99,9 @@ TEST_CASE("at small strain every law is Hooke's") {
     CHECK(bar(0, 0) / strain == doctest::Approx(E).epsilon(1e-6));
     CHECK(std::abs(bar(1, 1) / strain) < 1e-6 * E);
     // Plane strain, free across: E / (1 - nu^2).
-    const auto plate = law.stress(Mat<2>::diagonal({1 + strain, 1 - nu / (1 - nu) * strain}));
-    CHECK(plate(0, 0) / strain == doctest::Approx(E / (1 - nu * nu)).epsilon(1e-6));
-    CHECK(std::abs(plate(1, 1) / strain) < 1e-6 * E);
+    const auto sheet = law.stress(Mat<2>::diagonal({1 + strain, 1 - nu / (1 - nu) * strain}));
+    CHECK(sheet(0, 0) / strain == doctest::Approx(E / (1 - nu * nu)).epsilon(1e-6));
+    CHECK(std::abs(sheet(1, 1) / strain) < 1e-6 * E);
     // Uniaxial strain: E (1 - nu) / ((1 + nu) (1 - 2 nu)).
     const auto layer = law.stress(Mat<2>::diagonal({1 + strain, 1}));
     CHECK(layer(0, 0) / strain == doctest::Approx(E * 0.7 / (1.3 * 0.4)).epsilon(1e-6));

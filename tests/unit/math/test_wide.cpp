@@ -98,17 +98,10 @@ TEST_CASE("any and all look at every lane") {
   CHECK_FALSE(any(Wide(2.0) <= Wide(1.0)));
 }
 
-TEST_CASE("eight doubles go to memory and back in order") {
-  std::vector<double> memory(10, -1.0);
-  store_wide(one_to_eight(), memory.data() + 1);
-  CHECK(memory[0] == -1);
-  CHECK(memory[1] == 1);
-  CHECK(memory[8] == 8);
-  CHECK(memory[9] == -1);
-  const Wide back = load_wide(memory.data() + 2);
-  CHECK(back[0] == 2);
-  CHECK(back[6] == 8);
-  CHECK(back[7] == -1);
+TEST_CASE("eight doubles come from memory in order, wherever they begin") {
+  const std::vector<double> memory{-1, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+  const Wide eight = load_wide(memory.data() + 2);
+  for (int lane = 0; lane < 8; ++lane) CHECK(eight[lane] == lane + 2);
 }
 
 TEST_CASE("the ratio of a difference of logarithms keeps its digits where both numbers meet") {

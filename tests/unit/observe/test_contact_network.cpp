@@ -140,7 +140,7 @@ TEST_CASE("the backbone loses grains with two contacts, and with them their neig
   CHECK(ring.z_backbone == 0);
 }
 
-TEST_CASE("disks in columns between floor and lid are isostatic only when the walls count") {
+TEST_CASE("disks in columns between floor and top wall are isostatic only when the walls count") {
   // n columns of one disk each, held by four walls: N_gg = n - 1, N_gw = 2 n + 2, so 2 (3 n + 1)/n
   constexpr int n = 10;
   std::vector<ContactPoint> points;

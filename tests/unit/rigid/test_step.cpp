@@ -167,7 +167,7 @@ TEST_CASE("the report counts the contacts that push and measures their overlap b
   CHECK(report.converged);
 }
 
-TEST_CASE("a residual is the penetration that a contact would gain in the step over the mean diameter") {
+TEST_CASE("a residual is the overlap that a contact would gain in the step over the mean diameter") {
   const double dt = 0.01, closing = 0.7;
   auto disks = rigid_particles<2>({{0, 0}, {2.99, 0}}, {1, 2}, {1, 5}, {});
   disks.velocity[1] = {-closing, 0};

@@ -140,13 +140,13 @@ TEST_CASE(
   };
   const SoftGrains grains({test::placed(test::disk(4), 1e-3, {0, 1.014e-3}, {0.5, 0})},
                           make_law(MaterialLaw::neo_hookean, 1e6, 0.3), 1000);
-  const std::vector<Wall<2>> plates{test::floor_at(0),
-                                    {.point = {0, 2.028e-3}, .normal = {0, -1}, .velocity = {0, -1}}};
+  const std::vector<Wall<2>> walls{test::floor_at(0),
+                                   {.point = {0, 2.028e-3}, .normal = {0, -1}, .velocity = {0, -1}}};
   const double dt = stable_time_step(grains);
   const Vec<2> gravity{0, -3000};
-  check(ImplicitDynamics(grains, plates, {.tolerance = 1e-7, .wall_friction = 0.3, .gravity = gravity}), 2e-6,
+  check(ImplicitDynamics(grains, walls, {.tolerance = 1e-7, .wall_friction = 0.3, .gravity = gravity}), 2e-6,
         100, 1e-4);
-  check(ExplicitDynamics(grains, plates, {.wall_friction = 0.3, .gravity = gravity}), dt,
+  check(ExplicitDynamics(grains, walls, {.wall_friction = 0.3, .gravity = gravity}), dt,
         static_cast<int>(2e-4 / dt), 1e-11);
 }
 
@@ -159,7 +159,7 @@ TEST_CASE("a step that is too long for Newton's method is halved, and the walls 
   CHECK(report.rejected > 0);
   CHECK(report.converged);
   CHECK(dynamics.walls[1].point[1] == doctest::Approx(0.84e-3));
-  CHECK(report.penetration_max < 1e-3);
+  CHECK(report.overlap_max < 1e-3);
 }
 
 TEST_CASE("factors in single precision cost no iterations and no accuracy up to their longest step") {
@@ -167,17 +167,17 @@ TEST_CASE("factors in single precision cost no iterations and no accuracy up to 
                           make_law(MaterialLaw::neo_hookean, 1e7, 0.45), 1000);
   ImplicitOptions options{.tolerance = 1e-5};
   const double dt = 0.99 * options.single_precision_steps * stable_time_step(grains, 1);
-  const std::vector<Wall<2>> plates{test::floor_at(0),
-                                    {.point = {0, 2e-3}, .normal = {0, -1}, .velocity = {0, -0.02e-3 / dt}}};
-  ImplicitDynamics single(grains, plates, options);
+  const std::vector<Wall<2>> walls{test::floor_at(0),
+                                   {.point = {0, 2e-3}, .normal = {0, -1}, .velocity = {0, -0.02e-3 / dt}}};
+  ImplicitDynamics single(grains, walls, options);
   options.single_precision_steps = 0;
-  ImplicitDynamics full(grains, plates, options);
+  ImplicitDynamics full(grains, walls, options);
   for (int step = 0; step < 20; ++step) {
     const SoftStepReport a = single.step(dt), b = full.step(dt);
     CHECK(a.converged);
     CHECK(a.rejected == b.rejected);
     CHECK(a.iterations <= b.iterations + 2);
-    // both to 1e-5 of the radius, where the plates have moved by 0.01 to 0.2 of it
+    // both to 1e-5 of the radius, where the walls have moved by 0.01 to 0.2 of it
     CHECK(single.wall_impulse(1)[1] == doctest::Approx(full.wall_impulse(1)[1]).epsilon(1e-3));
   }
   CHECK(single.wall_impulse(1)[1] != full.wall_impulse(1)[1]);
@@ -186,9 +186,9 @@ TEST_CASE("factors in single precision cost no iterations and no accuracy up to 
 TEST_CASE("a step that no halving saves ends with a NumericalError that names the grain") {
   const SoftGrains grains({test::placed(test::disk(2), 1e-3, {0, 0})},
                           make_law(MaterialLaw::neo_hookean, 1e6, 0.3), 1000);
-  std::vector<Wall<2>> plates{test::floor_at(-0.5e-3),
-                              {.point = {0, -0.6e-3}, .normal = {0, -1}, .velocity = {}}};
-  ImplicitDynamics dynamics(grains, plates, {});
+  std::vector<Wall<2>> walls{test::floor_at(-0.5e-3),
+                             {.point = {0, -0.6e-3}, .normal = {0, -1}, .velocity = {}}};
+  ImplicitDynamics dynamics(grains, walls, {});
   CHECK_THROWS_AS(dynamics.step(1e-6), NumericalError);
 }
 
@@ -201,7 +201,7 @@ TEST_CASE("dynamics without grains or with negative friction is refused") {
 }
 
 TEST_CASE(
-    "a grain that plates press hard needs three iterations a step, the term on its outline notwithstanding") {
+    "a grain that walls press hard needs three iterations a step, the term on its outline notwithstanding") {
   const SoftGrains grains({test::placed(test::disk(6), 1e-3, {0, 1e-3})},
                           make_law(MaterialLaw::neo_hookean, 1e7, 0.3), 1000);
   const double dt = 40 * stable_time_step(grains, 1);

@@ -8,8 +8,8 @@ namespace softgrain {
 namespace {
 
 // clang-format off
-FormKey stands_for(std::string name, std::vector<std::string> keys, std::string_view text) {
-  return {std::move(name), Takes::as_key, std::move(keys), text};
+FormKey stands_for(std::string name, std::vector<std::string> keys, std::string_view text, std::vector<std::string> later = {}) {
+  return {std::move(name), Takes::as_key, std::move(keys), text, {}, std::move(later)};
 }
 FormKey word(std::string name, std::vector<std::string> words, std::vector<std::string> later, std::string_view text) {
   return {std::move(name), Takes::word, {}, text, std::move(words), std::move(later)};
@@ -27,7 +27,7 @@ std::vector<FormKey> all_forms() {
       only("experiment.dimension", "2", "dimensions of space"),
 
       {"kind.name", Takes::text, {}, "name of the kind, for [[pair]] and the column kind of a sample's file"},
-      stands_for("kind.model", {"experiment.model"}, "model of these grains"),
+      stands_for("kind.model", {"experiment.model"}, "model of these grains", {"rigid"}),
       stands_for("kind.number", {"sample.grains"}, "grains of this kind in the box"),
       only("kind.share", "1", "share of the grains' area that this kind has"),
       word("kind.shape", {"disk"}, {"ellipse", "polygon", "outline"}, "shape of the undeformed grain"),
@@ -42,7 +42,7 @@ std::vector<FormKey> all_forms() {
       stands_for("kind.diameter.shares", {"sample.shares"}, "share of the grains' area that each diameter of the list has"),
       stands_for("kind.diameter.numbers", {"sample.numbers"}, "how many grains have each diameter of the list, in proportion"),
       stands_for("kind.law.name", {"mpm.law"}, "law of the material (mpm)"),
-      stands_for("kind.law.attraction", {"bpm.attraction"}, "attraction between touching primaries (bpm between plates)"),
+      stands_for("kind.law.attraction", {"bpm.attraction"}, "attraction between touching primaries (bpm between walls)"),
       stands_for("kind.law.cohesive_pressure", {"bpm.cohesive_pressure"}, "internal cohesive pressure (bpm in a box)"),
       stands_for("kind.law.exponent", {"bpm.exponent"}, "exponent of the attraction (bpm)"),
       stands_for("kind.law.inner_friction", {"bpm.inner_friction"}, "friction between primaries of one grain (bpm)"),
@@ -59,10 +59,10 @@ std::vector<FormKey> all_forms() {
       {"sample.file", Takes::text, {}, "a CSV file with the places of the grains, instead of random ones: see below; from the folder of the case file"},
 
       {"stage.name", Takes::text, {}, "name of the stage"},
-      number("stage.yy.velocity", "m/s", any, "of lid and bottom towards each other; below 0: apart"),
+      number("stage.yy.velocity", "m/s", any, "of top and bottom wall towards each other; below 0: apart"),
       number("stage.yy.stress", "MPa", positive, "vertical stress that is kept, compression positive, for until.time"),
       number("stage.xx.velocity", "m/s", any, "of the side walls towards each other"),
-      word("stage.yy", {"rest"}, {}, "lid and bottom rest"),
+      word("stage.yy", {"rest"}, {}, "top and bottom wall rest"),
       word("stage.xx", {"rest"}, {}, "the side walls rest, as where nothing is said of them"),
       number("stage.until.strain", "", not_negative, "compressive strain from the start of the run, as the column strain has it"),
       number("stage.until.stress_yy", "MPa", positive, "vertical stress, compression positive"),

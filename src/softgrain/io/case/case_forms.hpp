@@ -11,7 +11,7 @@ namespace softgrain {
 enum class Takes {
   as_key,  ///< what the keys take that it stands for
   number,  ///< a number, or a quantity in `unit`
-  word,    ///< one of `words`; `later` come with later versions
+  word,    ///< one of `words`
   only,    ///< the number words.front(); others come with later versions
   text,    ///< any text
   texts,   ///< a list of texts
@@ -24,7 +24,7 @@ struct FormKey {
   Takes takes;
   std::vector<std::string> keys;  ///< of the schema, for which it stands
   std::string_view text;
-  std::vector<std::string> words = {}, later = {};
+  std::vector<std::string> words = {}, later = {};  ///< `later` come with later versions
   std::string_view unit = {};
   Range range = {};
 };

@@ -106,7 +106,7 @@ std::string box_impossible(const Case& c) {
 
 /// Before, this key was the friction inside the grain.
 std::string friction_inside_a_grain(const Case& c) {
-  if (!scope::bpm_between_plates.covers(c) || c.contact.friction == 0) return "";
+  if (!scope::bpm_between_walls.covers(c) || c.contact.friction == 0) return "";
   return fmt::format(
       "contact.friction acts between grains, and here is one: for the friction between its primaries write "
       "bpm.inner_friction = {}",

@@ -33,7 +33,7 @@ Motion motion_of(const StageText& stage) {
   if (stage.rests.contains("stage.yy") && !vertical && !sideways) return {0, 0, false};
   if (!vertical) not_yet_at(stage, "a stage says what yy does: a velocity, a stress or \"rest\"");
   if (sideways && *sideways != *vertical)
-    not_yet_at(stage, "the side walls come in as fast as lid and bottom, or not at all");
+    not_yet_at(stage, "the side walls come in as fast as top and bottom wall, or not at all");
   if (*vertical == 0) not_yet_at(stage, "a velocity of 0 is yy = \"rest\"");
   return {*vertical > 0 ? 1 : -1, std::abs(*vertical), sideways.has_value()};
 }
@@ -41,8 +41,7 @@ Motion motion_of(const StageText& stage) {
 /// What stages say in the words of [loading].
 struct Path {
   std::optional<Motion> moving;
-  std::vector<double>
-      ends;  // strains: of the first turn, where the plate comes back, of the second turn, ...
+  std::vector<double> ends;  // strains: of the first turn, where the wall comes back, of the second turn, ...
   std::optional<double> hold, hold_stress;
   int rests = 0;
 
@@ -80,7 +79,7 @@ void Path::add(const StageText& stage, bool last) {
 /// 0.1 - 0.08 = 0.02, as who wrote the strains means it.
 double as_decimals(double difference) { return std::stod(fmt::format("{:.12g}", difference)); }
 
-/// Strains at which the plate turns back, and how far it goes each time.
+/// Strains at which the wall turns back, and how far it goes each time.
 void give_turns(const Path& path, const StageText& last, CaseDraft& draft) {
   if (path.ends.size() % 2 == 0) not_yet_at(last, "the last way is one together");
   std::vector<double> turns;

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "softgrain/experiment/case.hpp"
@@ -16,14 +17,15 @@ std::string case_json(const Case& the_case);
 enum class Keys { all, that_act };
 
 /// A case file to edit: keys with their values in the unit in which people write them, and what they mean
-/// above them. The keys that act in this case, or all.
-std::string commented_case_text(const Case& the_case, Keys keys);
+/// above them. The keys that act in this case, or all. `advice` stands at the top: lines of a comment.
+std::string commented_case_text(const Case& the_case, Keys keys, std::string_view advice = "");
 
 /// A named start for `softgrain new`.
 struct CaseTemplate {
   std::string name;
   std::string text;
   Case content;
+  std::string advice{};  ///< lines of a comment on what to change first
 };
 const std::vector<CaseTemplate>& case_templates();
 

@@ -126,9 +126,13 @@ bool FormReader::read_key(const std::string& name, const TomlValue& value, Origi
 void FormReader::give(const FormKey& form, const TomlValue& value, Origin origin) {
   const auto* text = std::get_if<std::string>(&value.content);
   if (form.takes == Takes::as_key) {
+    if (text != nullptr && std::ranges::find(form.later, *text) != form.later.end())
+      return draft_.add(value.at.line > 0 ? Origin{.set = origin.set, .at = value.at} : origin,
+                        fmt::format("not yet: {} = \"{}\" comes with a later version; today it is {}",
+                                    form.name, *text, accepted(*find_key(form.keys.front()))));
     for (const std::string& key : form.keys) draft_.give(*find_key(key), form.name, value, origin);
     const std::string& first = form.keys.front();
-    if (form.name == "kind.diameter" && draft_.is_valid(first))  // also of one grain between plates
+    if (form.name == "kind.diameter" && draft_.is_valid(first))  // also of one grain between walls
       draft_.the_case.grain.radius = draft_.the_case.sample.smallest_diameter / 2;
   } else if (form.takes == Takes::word || form.takes == Takes::only) {
     check_word(form, value, origin);

@@ -56,20 +56,20 @@ Member member_of(Place place) {
 std::vector<Key> all_keys() {
   return {
       KEY(experiment.loading, "", its_words(),
-          "the loading path; diametral: one grain between two plates, the top one moves; compaction: grains in a box "
-          "whose lid comes down; isotropic: the same, all four walls come in"),
+          "the loading path; diametral: one grain between two walls, the top one moves; compaction: grains in a box "
+          "whose top wall comes down; isotropic: the same, all four walls come in"),
       KEY(experiment.model, "", its_words(),
           "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other; mpm: an "
           "elastic body by the material point method"),
 
-      KEY(grain.radius, "mm", positive(), "radius R of the grain", between_plates),
+      KEY(grain.radius, "mm", positive(), "radius R of the grain", between_walls),
       KEY(grain.density, "kg/m^3", positive(), "density rho; the grain weighs rho pi R^2 per metre of depth"),
 
       KEY(bpm.primaries, "", from_to(fewest_primaries, 1e6),
           "number of primary particles in a grain; in a box: in each, or in the smallest (bpm.equal)", with_bpm),
       KEY(bpm.size_ratio, "", from_to(1, largest_size_ratio), "largest over smallest primary diameter", with_bpm),
       KEY(bpm.attraction, "N/m", positive(),
-          "attraction F0 between touching primaries of the grain, per metre of depth (diametral)", bpm_between_plates),
+          "attraction F0 between touching primaries of the grain, per metre of depth (diametral)", bpm_between_walls),
       KEY(bpm.cohesive_pressure, "MPa", positive(),
           "internal cohesive pressure sigma_I = F0/<a0>, the same in all grains: F0 follows the size of their "
           "primaries (in a box)", bpm_in_a_box),
@@ -107,31 +107,31 @@ std::vector<Key> all_keys() {
       KEY(solver.min_sweeps, "", at_least(1), "sweeps of the contact solver in every step", with_bpm),
       KEY(solver.max_sweeps, "", at_least(1), "sweeps after which a step counts as not converged", with_bpm),
       KEY(solver.tolerance, "", positive(),
-          "converged: mean penetration gained in a step over the mean primary diameter is below this", with_bpm),
+          "converged: mean overlap gained in a step over the mean primary diameter is below this", with_bpm),
       KEY(solver.relaxation, "", between(0, 2), "over-relaxation omega of a sweep; 1 is plain Gauss-Seidel", with_bpm),
       KEY(solver.precision, "", its_words(),
           "of impulses and velocities within the sweeps of a bpm step; double for tolerances below 1e-11", with_bpm),
 
-      KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top plate; isotropic: of opposite walls towards each other, half by each"),
+      KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top wall; isotropic: of opposite walls towards each other, half by each"),
       KEY(loading.max_strain, "", between(0, 3),
-          "strain at the end: eps = -ln(1 - d/R), d half the travel of the plate; in a box: eps = ln(h_start/h)"),
+          "strain at the end: eps = -ln(1 - d/R), d half the travel of the wall; in a box: eps = ln(h_start/h)"),
       KEY(loading.max_packing_fraction, "", from_to(0, 2),
           "packing fraction Phi_0 of the undeformed grains at the end, if max_strain comes later; 0: none (in a box)", in_a_box),
       KEY(loading.max_stress, "MPa", at_least(0),
-          "vertical stress at the end, mean of lid and bottom over 0.1 % of strain; 0: none (in a box)", in_a_box),
+          "vertical stress at the end, mean of top and bottom over 0.1 % of strain; 0: none (in a box)", in_a_box),
       KEY(loading.max_overlap, "", from_to(0, 0.05),
           "mean overlap of primaries in contact, over their mean radius, at the end; 0: none (bpm in a box)", bpm_in_a_box),
       KEY(loading.unload_at, "", positive(),
-          "ascending strains at which the plate turns back once; [] for none"),
+          "ascending strains at which the wall turns back once; [] for none"),
       KEY(loading.unload_by, "", positive(), "strain given back before loading again", with_unloading),
-      KEY(loading.hold, "us", at_least(0), "rest of the plate wherever it turns, and at the end"),
+      KEY(loading.hold, "us", at_least(0), "rest of the wall wherever it turns, and at the end"),
       KEY(loading.hold_stress, "MPa", at_least(0),
           "vertical stress at which the walls leave their path: they keep it for loading.hold, which ends the run; 0: none "
           "(in a box)", in_a_box),
 
       KEY(time.step, "us", at_least(0),
           "time step dt; auto: bpm: a 43rd of the period of the bonds between the smallest primaries; implicit mpm: the "
-          "plate moves 1 % of the smallest radius; explicit mpm: a stable step, which is divided while cells need it", everywhere, "auto"),
+          "wall moves 1 % of the smallest radius; explicit mpm: a stable step, which is divided while cells need it", everywhere, "auto"),
 
       KEY(sample.seed, "", at_least(0),
           "seed of the random numbers; another seed is another sample of the same grain", with_chance),
@@ -170,7 +170,7 @@ std::vector<TableOfKeys> all_tables() {
       {"mpm", "Material point method: the elastic material and its grid."},
       {"contact", "Laws of contact."},
       {"solver", "The contact solver: nonlinear Gauss-Seidel."},
-      {"loading", "What the plates do."},
+      {"loading", "What the walls do."},
       {"time", "Time stepping."},
       {"sample", "The initial state."},
       {"box", "What holds the grains."},

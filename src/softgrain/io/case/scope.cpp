@@ -35,7 +35,7 @@ std::vector<std::string> notes_on_effect(const Case& the_case, const std::vector
     const bool one = names.size() == 1;
     notes.push_back(fmt::format("note: {} {} no effect on {} {}: {} only {}", listed(names),
                                 one ? "has" : "have", word_of(the_case.experiment.model),
-                                is_in_a_box(the_case) ? "in a box" : "between plates",
+                                is_in_a_box(the_case) ? "in a box" : "between walls",
                                 one ? "it acts" : "they act", words));
   }
   return notes;

@@ -26,11 +26,11 @@ inline constexpr Scope everywhere{"", [](const Case&) { return true; }};
 inline constexpr Scope with_bpm{"on bpm", is_bpm};
 inline constexpr Scope with_mpm{"on mpm", is_mpm};
 inline constexpr Scope in_a_box{"in a box", is_in_a_box};
-inline constexpr Scope between_plates{"between plates", [](const Case& c) { return !is_in_a_box(c); }};
+inline constexpr Scope between_walls{"between walls", [](const Case& c) { return !is_in_a_box(c); }};
 inline constexpr Scope bpm_in_a_box{"on bpm in a box",
                                     [](const Case& c) { return is_bpm(c) && is_in_a_box(c); }};
-inline constexpr Scope bpm_between_plates{"on bpm between plates",
-                                          [](const Case& c) { return is_bpm(c) && !is_in_a_box(c); }};
+inline constexpr Scope bpm_between_walls{"on bpm between walls",
+                                         [](const Case& c) { return is_bpm(c) && !is_in_a_box(c); }};
 inline constexpr Scope total_lagrangian{"on total_lagrangian mpm", is_total_lagrangian};
 inline constexpr Scope updated_lagrangian{"on updated_lagrangian mpm", is_updated_lagrangian};
 inline constexpr Scope implicit{
@@ -57,7 +57,7 @@ inline constexpr Scope with_unloading{"with loading.unload_at",
 
 }  // namespace scope
 
-/// "note: time.step and solver.tolerance have no effect on mpm between plates: they act only on bpm": a line
+/// "note: time.step and solver.tolerance have no effect on mpm between walls: they act only on bpm": a line
 /// for each scope that the keys of these full names have and the case lacks.
 std::vector<std::string> notes_on_effect(const Case& the_case, const std::vector<std::string>& keys);
 

@@ -4,7 +4,7 @@
 
 namespace softgrain {
 
-/// What stands around deflated bytes: RFC 1950, RFC 1952.
+/// Container format of the DEFLATE stream: RFC 1950, RFC 1952.
 enum class Container { zlib, gzip };
 
 /// Deflated bytes; `level` from 1, the fastest, to 12, the smallest. Throws nothing but std::bad_alloc, so

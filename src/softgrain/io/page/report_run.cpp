@@ -244,7 +244,7 @@ Json provenance(const RunPaths& paths) {
 /// The resolved case as JSON; nothing where there is none that this version reads.
 Json settings_of(const std::string& case_text, const std::string& name) {
   try {
-    return case_text.empty() ? Json::object() : Json::parse(case_json(parse_case(case_text, name)));
+    return case_text.empty() ? Json::object() : Json::parse(case_json(parse_recorded_case(case_text, name)));
   } catch (const UsageError&) {
     return Json::object();
   }

@@ -72,11 +72,12 @@ SeriesWriter::SeriesWriter(const fs::path& path) : file_(path) {
 void SeriesWriter::write_row(const std::vector<Quantity>& row) {
   const std::string header = header_of(row);
   if (header_.empty()) file_.append(header + "\n");
-  require(
-      header_.empty() || header == header_,
-      "this program writes other columns than the series has; resume with the version that began the run\n"
-      "  series:  {}\n  program: {}",
-      header_, header);
+  require(header_.empty() || header == header_,
+          "the columns of series.csv differ from those that this version writes; resume with the version "
+          "that began "
+          "the run\n"
+          "  series:  {}\n  program: {}",
+          header_, header);
   header_ = header;
   std::string line;
   for (const Quantity& quantity : row) line += fmt::format("{}{}", line.empty() ? "" : ",", quantity.value);

@@ -66,7 +66,7 @@ TEST_CASE("a parameter that the law does not take is named as without effect") {
   const Case c = parse_case(mpm + "c20 = 1e4\n", "case.toml", {});
   const std::vector<std::string> notes = notes_on_effect(c, {"mpm.c20", "mpm.young_modulus"});
   REQUIRE(notes.size() == 1);
-  CHECK(notes[0] == "note: mpm.c20 has no effect on mpm between plates: it acts only with mpm.law yeoh");
+  CHECK(notes[0] == "note: mpm.c20 has no effect on mpm between walls: it acts only with mpm.law yeoh");
   const CaseReading metal = parse_case_with_notes(
       "[[kind]]\nmodel = 'mpm'\nlaw = { name = 'hencky', yield_stress = '70 MPa' }\n", "case.toml", {});
   CHECK(metal.without_effect == std::vector<std::string>{"mpm.yield_stress"});

@@ -17,7 +17,7 @@ namespace {
 std::vector<std::pair<std::string, std::string>> kinds() {
   const std::string few = "[sample]\ngrains = 3\npacking_fraction = 0.5\n[bpm]\nprimaries = 10\n";
   const std::string box = "[experiment]\nloading = 'compaction'\nmodel = ";
-  return {{"bpm between plates", "[bpm]\nprimaries = 10\n"},
+  return {{"bpm between walls", "[bpm]\nprimaries = 10\n"},
           {"bpm in a box", few + box + "'bpm'\n"},
           {"implicit", "[experiment]\nmodel = 'mpm'\n[mpm]\ncells = 4\n"},
           {"explicit", "[experiment]\nmodel = 'mpm'\n[mpm]\ncells = 4\nintegrator = 'explicit'\n"},
@@ -87,9 +87,9 @@ TEST_CASE("a note names keys that do nothing, and where they would act") {
   CHECK(
       notes_on_effect(reading.the_case, reading.without_effect) ==
       std::vector<std::string>{
-          "note: contact.push_out and solver.max_sweeps have no effect on mpm between plates: they act "
+          "note: contact.push_out and solver.max_sweeps have no effect on mpm between walls: they act "
           "only on bpm",
-          "note: sample.grains has no effect on mpm between plates: it acts only on random grains in a box"});
+          "note: sample.grains has no effect on mpm between walls: it acts only on random grains in a box"});
 }
 
 TEST_CASE("no template and no resolved case gives a key without effect") {

@@ -174,6 +174,7 @@ TEST_CASE("what comes with later versions is refused by key and line, and says w
   check_not_yet("[[kind]]\nname = 'a'\n[[kind]]\nname = 'b'\n", "3:1", "diameter = { values");
   check_not_yet("[experiment]\ndimension = 3\n", "2:13", "today it is 2");
   check_not_yet("[[kind]]\nshape = 'ellipse'\n", "2:9", "today it is disk");
+  check_not_yet("[[kind]]\nmodel = 'rigid'\n", "2:9", "today it is one of \"bpm\", \"mpm\"");
   check_not_yet("[[kind]]\nshare = 0.7\n", "2:9", "today it is 1");
   check_not_yet("[box]\nx = 'periodic'\n", "2:5", "today it is walls");
   check_not_yet("[box]\ndie_friction = 0.2\n", "2:1", "[[pair]]");
