@@ -218,3 +218,18 @@ TEST_CASE("a free grain keeps its spin and the energy of it, in implicit steps t
   CHECK(kinetic == doctest::Approx(energy).epsilon(2e-3));
   CHECK(std::abs(energy - kinetic - work.internal - work.inertia) < 1e-3 * energy);
 }
+
+TEST_CASE("an implicit step that moves a grain by more than half its radius is divided, and arrives") {
+  constexpr double R = 1e-3, speed = 2;
+  ImplicitDynamics dynamics({{test::placed(test::disk(4), R, {0, 0}, {speed, 0})},
+                             make_law(MaterialLaw::neo_hookean, 1e7, 0.45),
+                             990},
+                            {}, {});
+  const double dt = 2 * R / speed;
+  const SoftStepReport report = dynamics.step(dt);
+  CHECK(report.rejected >= 1);
+  const Vec<2> x = dynamics.grains.node_position(0, 0);
+  ImplicitDynamics start(
+      {{test::placed(test::disk(4), R, {0, 0})}, make_law(MaterialLaw::neo_hookean, 1e7, 0.45), 990}, {}, {});
+  CHECK(x[0] - start.grains.node_position(0, 0)[0] == doctest::Approx(2 * R).epsilon(1e-9));
+}

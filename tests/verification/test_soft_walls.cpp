@@ -16,14 +16,14 @@ namespace {
 
 constexpr double R = 1e-3, E = 1e7, nu = 0.45, density = 990, pi = 3.141592653589793;
 
-/// Mass, centre, momentum and spin about the centre of a single grain.
+/// Mass, centre, momentum, spin about the centre and moment of inertia of a grain.
 struct Motion {
   double mass = 0, spin = 0, inertia = 0;
   Vec<2> centre, momentum;
 };
-Motion motion_of(const SoftGrains& grains) {
+Motion motion_of(const SoftGrains& grains, int grain = 0) {
   Motion motion;
-  const auto [batch, lane] = grains.batch_of(0);
+  const auto [batch, lane] = grains.batch_of(grain);
   const int nodes = batch->topology->grid.nodes();
   for (int i = 0; i < nodes; ++i) {
     const double m = grains.node_mass(*batch, i)[lane];
@@ -36,6 +36,7 @@ Motion motion_of(const SoftGrains& grains) {
     const Vec<2> x = test::lane_of(batch->position[i], lane) - motion.centre;
     motion.spin +=
         grains.node_mass(*batch, i)[lane] * dot(perpendicular(x), test::lane_of(batch->velocity[i], lane));
+    motion.inertia += grains.node_mass(*batch, i)[lane] * dot(x, x);
   }
   return motion;
 }
@@ -198,4 +199,35 @@ TEST_CASE("without friction contact gives no energy to a packing") {
   }
   CHECK(dynamics.work.walls > 2);
   CHECK(least > -0.01 * dynamics.work.walls);  // with the normal of the end: -0.12
+}
+
+TEST_CASE("a slow step ends the spin of a grain that touches another, and its energy is accounted for") {
+  constexpr double speed = 1e-3, rate = 20 * speed / R;
+  const auto disk = test::disk(6);
+  SoftGrains grains({test::placed(disk, R, {R, R}), test::placed(disk, R, {1.2 * R, 2.98 * R})},
+                    make_law(MaterialLaw::neo_hookean, E, nu), density);
+  std::vector<Wall<2>> walls = test::box_walls(2.2 * R, speed);
+  walls[1].point[1] = 4 * R;
+  ImplicitDynamics dynamics(std::move(grains), walls, {});
+  const double dt = 0.01 * R / speed;
+  for (int k = 0; k < 8; ++k) dynamics.step(dt);
+  REQUIRE(dynamics.wall_impulse(1)[1] > 0);
+  const Vec<2> centre = motion_of(dynamics.grains, 1).centre;
+  for (GrainBatch& batch : dynamics.grains.batches)
+    for (std::size_t i = 0; i < batch.position.size(); ++i)
+      for (int d = 0; d < 2; ++d)
+        batch.velocity[i][d].set(
+            1,
+            batch.velocity[i][d][1] + rate * perpendicular(test::lane_of(batch.position[i], 1) - centre)[d]);
+  const double energy = dynamics.grains.kinetic_energy();
+  const WorkBudget start = dynamics.work;
+  const double wave_time = R / std::sqrt(3.79e7 / density);  // P-wave modulus
+  dynamics.sub_step = 5 * wave_time;
+  dynamics.step(21 * wave_time);
+  const Motion after = motion_of(dynamics.grains, 1);
+  CHECK(std::abs(after.spin / after.inertia) < 3.1 * speed / R);
+  const WorkBudget& end = dynamics.work;
+  const double taken = end.inertia - start.inertia + end.contacts - start.contacts;
+  const double given = energy - dynamics.grains.kinetic_energy() + end.walls - start.walls;
+  CHECK(given - (end.internal - start.internal) == doctest::Approx(taken).epsilon(1e-3));
 }

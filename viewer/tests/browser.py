@@ -4,6 +4,7 @@ import base64
 import json
 import os
 import select
+import signal
 import subprocess
 import tempfile
 import time
@@ -13,7 +14,7 @@ class Browser:
     """A headless Chromium with one page; collects what it logs and what it asks of the network."""
 
     def __init__(self, program, width=1440, height=900, dark=False):
-        self._profile = tempfile.TemporaryDirectory(prefix="softgrain-chromium-")
+        self._profile = tempfile.TemporaryDirectory(prefix="softgrain-chromium-", ignore_cleanup_errors=True)
         to_child, self._write = os.pipe()
         self._read, from_child = os.pipe()
         command = [program, "--headless=new", "--no-sandbox", "--remote-debugging-pipe", "--disable-dev-shm-usage",
@@ -22,7 +23,7 @@ class Browser:
         # Chromium reads commands from descriptor 3 and answers on 4.
         words = ["sh", "-c", f'exec "$@" 3<&{to_child} 4>&{from_child}', "sh", *command]
         self._process = subprocess.Popen(words, pass_fds=(to_child, from_child), stdout=subprocess.DEVNULL,
-                                         stderr=subprocess.DEVNULL)
+                                         stderr=subprocess.DEVNULL, start_new_session=True)
         os.close(to_child)
         os.close(from_child)
         self._pending, self._number, self._session = b"", 0, None
@@ -40,9 +41,19 @@ class Browser:
     def __exit__(self, *_):
         self._process.terminate()
         self._process.wait(20)
+        self._end_children()
         os.close(self._write)
         os.close(self._read)
         self._profile.cleanup()
+
+    def _end_children(self):
+        """Chromium's helpers outlive it for a moment and still write into the profile: waits until none is left."""
+        for _ in range(200):
+            try:
+                os.killpg(self._process.pid, signal.SIGKILL)
+            except ProcessLookupError:
+                return
+            time.sleep(0.05)
 
     def call(self, method, **parameters):
         """One command of the protocol; its result."""

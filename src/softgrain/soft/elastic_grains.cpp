@@ -14,33 +14,25 @@
 namespace softgrain {
 namespace {
 
-/// Beyond this root mean square of a grain's motion in a step, over its radius, the step was far too long.
-constexpr double largest_motion = 0.5;
-
-/// First grain that moves further than that in dt, or not by a number; -1 if none does.
-int runaway_grain(const SoftGrains& grains, double dt) {
-  std::vector<int> runaway(grains.batches.size(), -1);
-  parallel_for(static_cast<int>(runaway.size()), [&](int b) {
-    const GrainBatch& batch = grains.batches[b];
-    Wide sum = 0.0;
-    for (const Vec<2, Wide>& v : batch.velocity) sum += dot(v, v);
-    const double nodes = static_cast<double>(batch.velocity.size());
-    for (int lane = Wide::size - 1; lane >= 0; --lane)
-      if (batch.grain[lane] >= 0 &&
-          !(dt * std::sqrt(sum[lane] / nodes) < largest_motion * batch.radius[lane]))
-        runaway[b] = batch.grain[lane];
-  });
-  for (const int grain : runaway)
-    if (grain >= 0) return grain;
-  return -1;
-}
-
 /// Of the last correction of Newton's method.
 double residual_limit(const ImplicitOptions& options) { return options.tolerance; }
 
 /// Speed of pressure waves in a grain [m/s].
 double wave_speed(const SoftGrains& grains) {
   return std::visit([&](const auto& law) { return law.wave_speed(grains.density); }, grains.law);
+}
+
+/// Raises IoError for numbers that cannot be.
+void visit_sub_steps(ImplicitDynamics& dynamics, StateVisitor& visit) {
+  visit({"sub_step", "s", Owner::run, Role::start, "the longest to try next"}, dynamics.sub_step);
+  visit({"sub_step_successes", "", Owner::run, Role::start, "sub-steps of that length that succeeded"},
+        dynamics.successes);
+  visit({"sub_step_patience", "", Owner::run, Role::start, "how many shall before twice the length is tried"},
+        dynamics.patience);
+  constexpr int most = 1000;
+  if (!(dynamics.successes >= 0 && dynamics.successes <= most && dynamics.patience >= 1 &&
+        dynamics.patience <= most))
+    throw IoError("the snapshot's arrays 'sub_step_successes' and 'sub_step_patience' cannot be");
 }
 
 /// Raises IoError for numbers of sub-steps that cannot be.
@@ -61,9 +53,10 @@ template <class Dynamics>
 StepReport ElasticGrains<Dynamics>::step(Box<2>& box, double dt) {
   dynamics_.walls = box.walls;
   const SoftStepReport soft = dynamics_.step(dt);
-  if (const int grain = runaway_grain(dynamics_.grains, dynamics_.impulse_time); grain >= 0)
-    throw NumericalError(
-        fmt::format("grain {} moves by more than half its radius in a step; use a smaller time step", grain));
+  if constexpr (std::is_same_v<Dynamics, ExplicitDynamics>)
+    if (const int grain = dynamics_.grains.runaway_grain(dynamics_.impulse_time); grain >= 0)
+      throw NumericalError(fmt::format(
+          "grain {} moves by more than half its radius in a step; use a smaller time step", grain));
   for (std::size_t w = 0; w < box.walls.size(); ++w) {
     box.walls[w].point = dynamics_.walls[w].point;
     box.impulse[w] = dynamics_.wall_impulse(static_cast<int>(w));
@@ -186,7 +179,7 @@ void ElasticGrains<Dynamics>::visit(StateVisitor& visit) {
   visit({"iterations_of_row", "", Owner::run, Role::sum, "iterations since the last row"}, sums_.iterations);
   visit({"rejected_steps", "", Owner::run, Role::sum, "sub-steps taken back"}, sums_.rejected);
   if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>) {
-    visit({"sub_step", "s", Owner::run, Role::start, "the longest to try next"}, dynamics_.sub_step);
+    visit_sub_steps(dynamics_, visit);
   } else {
     visit_stable_step(dynamics_.stable, visit);
   }

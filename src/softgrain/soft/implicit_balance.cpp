@@ -1,9 +1,18 @@
+#include <algorithm>
+#include <cmath>
+
 #include "softgrain/contact/assemble.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/soft/contact_work.hpp"
 #include "softgrain/soft/implicit_step.hpp"
 
 namespace softgrain {
+namespace {
+
+/// In a slow step the outline of a grain that touches others turns at most so much faster than walls move.
+constexpr double turn_over_walls = 3;
+
+}  // namespace
 
 /// Before the contacts are found anew: the system of the last iteration, free of impulses.
 void ImplicitDynamics::catch_problem(double dt) {
@@ -15,10 +24,14 @@ void ImplicitDynamics::catch_problem(double dt) {
 /// touches none what backward Euler took of its angular momentum about the centre:
 ///   sum_i m_i (v - v_n)_i = dt f_ext + H p,   L = L_n + dt sum_i (x - x_c)_i x f_i.
 /// A step whose inertia A does not have gives a grain that touches others no more than one more correction
-/// would, and no spin. What this changes of the kinetic energy, backward Euler had taken.
+/// would, and no spin. A slow step, sub-steps of it included, ends faster spins of touching grains: without
+/// friction nothing else does, and a grain that turns by a good part of itself in a step lets none converge
+/// (docs/decisions/0031). What this changes of the kinetic energy, backward Euler had taken.
 void ImplicitDynamics::balance_momentum(double dt) {
   const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
   const double t = step_of_matrix(dt);
+  double fastest = 0;
+  for (const Wall<2>& wall : walls) fastest = std::max(fastest, turn_over_walls * norm(wall.velocity));
   std::vector<Wide> given(batches());  // kinetic energy
   parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];
@@ -26,7 +39,7 @@ void ImplicitDynamics::balance_momentum(double dt) {
     grains.scatter_outline(force, batch, outer);
     const auto cross = [](const Vec<2, Wide>& u, const Vec<2, Wide>& v) { return u[0] * v[1] - u[1] * v[0]; };
     const int nodes = batch.topology->grid.nodes();
-    Wide mass = 0.0, inertia = 0.0, spin = 0.0, load = 0.0, kinetic = 0.0;
+    Wide mass = 0.0, inertia = 0.0, spin = 0.0, kept_spin = 0.0, load = 0.0, kinetic = 0.0;
     Vec<2, Wide> sum{}, first{}, first_start{};
     for (int i = 0; i < nodes; ++i) {
       const Wide m = grains.node_mass(batch, i);
@@ -46,13 +59,18 @@ void ImplicitDynamics::balance_momentum(double dt) {
       }
       inertia += m * dot(x, x);
       load += dot(outer[i], outer[i]);
+      kept_spin += m * cross(x, batch.velocity[i]);
       spin +=
           m * (cross(start_[b][i] - centre_start, flight) - cross(x, batch.velocity[i])) + cross(x, change);
       kinetic -= 0.5 * m * dot(batch.velocity[i], batch.velocity[i]);
     }
     const Wide touching = t * t / (dt * dt), share = touching + flying_[b] * (Wide(1) - touching);
     const Vec<2, Wide> dv = (share / mass) * sum;
-    const Wide turn = t < dt ? Wide(0) : select(load <= 0.0, spin / inertia, Wide(0));
+    Wide turn = t < dt ? Wide(0) : select(load <= 0.0, spin / inertia, Wide(0));
+    for (int lane = 0; slow_ && lane < Wide::size && batch.grain[lane] >= 0; ++lane) {
+      const double rate = kept_spin[lane] / inertia[lane];
+      if (load[lane] > 0 && std::abs(rate) * batch.radius[lane] > fastest) turn.set(lane, -rate);
+    }
     for (int i = 0; i < nodes; ++i) {
       Vec<2, Wide>& v = batch.velocity[i];
       v += dv + turn * Vec<2, Wide>{-(batch.position[i][1] - centre[1]), batch.position[i][0] - centre[0]};

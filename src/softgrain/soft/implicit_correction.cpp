@@ -41,7 +41,7 @@ Wide secant(const WideVectors& f, const WideVectors& f_before) {
 }  // namespace
 
 /// Solves A f = r + H p/dt and moves x by f and what the iterations before add to it.
-ImplicitDynamics::Imbalance ImplicitDynamics::correct(bool same_matrix) {
+ImplicitDynamics::Imbalance ImplicitDynamics::correct(bool first, bool same_matrix) {
   const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, outline_.dt);
   parallel_for(batches(), [&](int b) {
     const GrainBatch& batch = grains.batches[b];
@@ -59,7 +59,7 @@ ImplicitDynamics::Imbalance ImplicitDynamics::correct(bool same_matrix) {
   }
   const double residual =
       std::max(correction / quasi_static_correction, unbalanced_force(force) / quasi_static_force);
-  follow_momentum(same_matrix, residual >= options.tolerance);
+  follow_momentum(first, residual >= options.tolerance);
   return {.correction = correction, .residual = residual};
 }
 
@@ -102,9 +102,12 @@ double ImplicitDynamics::unbalanced_force(std::span<const Vec<2>> contact_force)
   });
   double scale = 0;
   for (const Vec<2>& f : contact_force) scale += norm(f) / grains.size();
+  return std::sqrt(std::ranges::max(largest)) / std::max(scale, least_contact_force());
+}
+
+double ImplicitDynamics::least_contact_force() const {
   const double wave_speed = smallest_radius_ / wave_time_;
-  const double stiffness = grains.density * wave_speed * wave_speed;
-  return std::sqrt(std::ranges::max(largest)) / std::max(scale, least_force * stiffness * mean_radius_);
+  return least_force * grains.density * wave_speed * wave_speed * mean_radius_;
 }
 
 /// For each grain by itself and dx its last move:
@@ -126,16 +129,17 @@ void ImplicitDynamics::follow_secant(bool accelerated) {
   });
 }
 
-/// Nesterov's momentum, for each grain by itself, and from anew where it points against f or A is new:
+/// Nesterov's momentum, for each grain by itself, and from anew where it points against f (not where A is
+/// new: motions of many grains, slower than any tangent, take longer than a matrix is kept):
 ///   y_k+1 = x_k+1 + (t_k - 1)/t_k+1 (x_k+1 - x_k),  x_k+1 = y_k + f(y_k),  t_k+1 = (1 + sqrt(1 + 4
 ///   t_k^2))/2.
 /// Unlike a secant it also speeds up modes that grow, in which grains leave an unstable place.
 /// The last iteration goes by f.
-void ImplicitDynamics::follow_momentum(bool same_matrix, bool accelerated) {
+void ImplicitDynamics::follow_momentum(bool first, bool accelerated) {
   parallel_for(batches(), [&](int b) {
     const WideVectors& f = force_[b];
     WideVectors& ahead = moved_[b];  // y_k - x_k
-    if (!same_matrix) {
+    if (first) {
       ahead.assign(f.size(), {});
       pace_[b] = 1.0;
     }

@@ -20,11 +20,18 @@ constexpr int refactor_every = 8;
 /// NLGS sweeps in vain (docs/decisions/0013).
 constexpr double contact_share = 0.25;
 
+/// The same in a slow step while hardly any force holds the grains: what NLGS leaves would push them about by
+/// more than Newton's tolerance (docs/decisions/0031).
+constexpr double floppy_share = 0.1;
+
 /// A vertex may be this many tolerances deep: the worst contact that NLGS allows, and Newton's last move.
 constexpr double deepest = 10;
 
 /// Proximal term of a quasi-static step over that of others (docs/decisions/0023).
 constexpr double quasi_static_proximal = 2;
+
+/// After so many sub-steps that succeeded, at most, longer ones are tried again.
+constexpr int most_patience = 4;
 
 /// Sub-steps shorter than this share of the explicit step are not tried.
 constexpr double shortest_step = 1.0 / 64;
@@ -62,15 +69,19 @@ SoftStepReport ImplicitDynamics::step(double dt) {
   SoftStepReport report;
   wall_impulse_.assign(walls.size(), {});
   if (sub_step <= 0) sub_step = dt;
+  slow_ = step_of_matrix(dt) < dt;
   const double shortest = shortest_step * std::min(dt, explicit_step_);
   for (double done = 0; done < dt * (1 - 1e-9);) {
     const double part = std::min(sub_step, dt - done);
     const Failure failure = try_step(part, report);
     if (failure == Failure::none) {
       done += part;
-      if (part == sub_step) sub_step *= 2;
+      if (part == sub_step && ++successes >= patience) sub_step *= 2, successes = 0;
+      if (sub_step > dt) patience = 1;
       continue;
     }
+    patience = std::min(2 * patience, most_patience);
+    successes = 0;
     take_back();
     ++report.rejected;
     sub_step = part / 4;
@@ -84,7 +95,7 @@ void ImplicitDynamics::give_up(Failure failure, double dt) const {
   const char* cause = failure == Failure::inverted_point      ? "a material point is turned inside out"
                       : failure == Failure::indefinite_matrix ? "the stiffness is indefinite"
                       : failure == Failure::not_finite        ? "a correction is not finite"
-                      : failure == Failure::too_far           ? "a correction is larger than half a grain"
+                      : failure == Failure::too_far           ? "a motion is larger than half a radius"
                       : failure == Failure::too_deep          ? "a contact stays too deep"
                                                               : "Newton's method does not converge";
   throw NumericalError(fmt::format(
@@ -95,6 +106,7 @@ void ImplicitDynamics::give_up(Failure failure, double dt) const {
 
 ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& report) {
   start(dt);
+  const int most = most_iterations(dt);
   const double proximal = options.proximal * (quasi_static(dt) ? quasi_static_proximal : 1);
   Failure failure = factor(dt, proximal, report);
   if (failure == Failure::indefinite_matrix) failure = factor(dt, 4 * proximal, report);
@@ -103,14 +115,14 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
   for (int iteration = 1; failure == Failure::none; ++iteration) {
     if ((failure = residual(dt)) != Failure::none) break;
     const bool contacts_solved = solve_contacts(dt, report);
-    left = correct(iteration > 1 && (iteration - 1) % renewal != 0);
+    left = correct(iteration == 1, (iteration - 1) % renewal != 0);
     ++report.iterations;
     if (!(left.correction < largest_correction))
       return std::isfinite(left.correction) ? Failure::too_far : Failure::not_finite;
     if (contacts_solved && left.residual < options.tolerance) {
       if (find_depth() <= deepest * options.tolerance) break;
-      failure = iteration == options.max_iterations ? Failure::too_deep : failure;
-    } else if (iteration == options.max_iterations) {
+      failure = iteration == most ? Failure::too_deep : failure;
+    } else if (iteration == most) {
       failure = Failure::no_convergence;
     }
     if (failure == Failure::none && iteration % renewal == 0) failure = factor(dt, proximal, report);
@@ -118,6 +130,11 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
   if (failure == Failure::none) failure = finish(dt, report);
   if (failure == Failure::none) report.residual = std::max(report.residual, left.residual);
   return failure;
+}
+
+int ImplicitDynamics::most_iterations(double dt) const {
+  if (step_of_matrix(dt) < dt) return options.slow_iterations;
+  return quasi_static(dt) ? options.quasi_static_iterations : options.max_iterations;
 }
 
 /// A = M/t^2 + K(x) + c p/l on the outline; its Cholesky factor and the compliance of the outlines.
@@ -200,6 +217,12 @@ std::vector<double> ImplicitDynamics::friction_of_contacts() const {
   return friction;
 }
 
+double ImplicitDynamics::mean_contact_force(double dt) const {
+  double sum = 0;
+  for (const Vec<2>& p : impulse) sum += norm(p);
+  return sum / (dt * grains.size());
+}
+
 /// Contacts at the present positions, and their impulses by NLGS with warm start. True if it converged.
 bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   grains.gather_outline(outline_.position);
@@ -210,7 +233,8 @@ bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   system.apply_impulses(impulse);
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
-  solver.tolerance = contact_share * options.tolerance;
+  const bool floppy = step_of_matrix(dt) < dt && mean_contact_force(dt) < least_contact_force();
+  solver.tolerance = (floppy ? floppy_share : contact_share) * options.tolerance;
   const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction_of_contacts(), solver);
   report.sweeps += solved.sweeps;
   return solved.converged;
@@ -244,6 +268,8 @@ ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& re
       batch.velocity[i] = Wide(1 / dt) * (batch.position[i] - start_[b][i]);
   });
   if (!none_failed(failed)) return Failure::inverted_point;
+  failed_grain_ = grains.runaway_grain(dt);
+  if (failed_grain_ >= 0) return Failure::too_far;
   if (caught) catch_problem(dt);
   flow(dt);
   if (step_of_matrix(dt) < dt) hold_touching();

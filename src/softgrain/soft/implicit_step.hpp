@@ -22,6 +22,9 @@ inline std::span<Wide> numbers(WideVectors& vectors) { return {&vectors[0][0], 2
 struct ImplicitOptions {
   double tolerance = 1e-4;  ///< largest correction of Newton's last iteration, over the mean grain radius
   int max_iterations = 40;  ///< of Newton's method
+  /// The same in a quasi-static step; and in one whose inertia A does not have, where iterations also carry
+  /// grains into the places that they fall into
+  int quasi_static_iterations = 20, slow_iterations = 200;
   double proximal =
       0.5;  ///< c of the term c p/l on the outline's diagonal of the tangent (p/l contact pressure)
   /// In times of a wave through the smallest grain, R/c (docs/decisions/0023): a (sub-)step longer than this
@@ -55,9 +58,10 @@ class ImplicitDynamics {
                    const ImplicitOptions& implicit_options);
 
   /// One step of dt; walls move by dt times their velocity. A sub-step in which Newton's method or NLGS does
-  /// not converge, that leaves a contact too deep, inverts a point or makes A indefinite is taken back and
-  /// tried again with a quarter of its length; sub-steps grow again while they succeed, also from one step to
-  /// the next. Raises NumericalError, naming the grain, for sub-steps far below the explicit one.
+  /// not converge, that leaves a contact too deep, moves a grain by more than half its radius, inverts a
+  /// point or makes A indefinite is taken back and tried again with a quarter of its length; sub-steps grow
+  /// again while they succeed, also from one step to the next. Raises NumericalError, naming the grain, for
+  /// sub-steps far below the explicit one.
   SoftStepReport step(double dt);
 
   /// Impulse of the grains on a wall in the last step [N s/m].
@@ -71,8 +75,10 @@ class ImplicitDynamics {
   std::vector<Vec<2>> impulse;           ///< theirs (p_n, p_t) [N s/m]
   double impulse_time = 0;               ///< the (sub-)step over which they acted [s]
   double sub_step = 0;                   ///< the longest to try next [s]; 0: the whole step
-  WorkBudget work;                       ///< since the start
-  FlowOfGrains last_flow;                ///< of the last (sub-)step
+  /// Sub-steps of that length that succeeded, and how many shall before twice the length is tried
+  int successes = 0, patience = 1;
+  WorkBudget work;         ///< since the start
+  FlowOfGrains last_flow;  ///< of the last (sub-)step
   /// Unless empty: becomes the last contact problem of every step.
   std::optional<SolvedContactProblem> caught;
 
@@ -111,6 +117,7 @@ class ImplicitDynamics {
   /// The step whose inertia A has [s].
   double step_of_matrix(double dt) const { return std::min(dt, options.inertia_of_at_most * wave_time_); }
   Failure try_step(double dt, SoftStepReport& report);
+  int most_iterations(double dt) const;
   void start(double dt);
   void set_flying(double dt);
   void hold_touching();
@@ -122,11 +129,13 @@ class ImplicitDynamics {
   Failure factor(double dt, double proximal, SoftStepReport& report);
   Failure residual(double dt);
   bool solve_contacts(double dt, SoftStepReport& report);
-  Imbalance correct(bool same_matrix);
+  Imbalance correct(bool first, bool same_matrix);
   double largest_correction_of_grains();
   double unbalanced_force(std::span<const Vec<2>> contact_force) const;
   void follow_secant(bool accelerated);
-  void follow_momentum(bool same_matrix, bool accelerated);
+  void follow_momentum(bool first, bool accelerated);
+  double mean_contact_force(double dt) const;  // sum of all, over the number of grains [N/m]
+  double least_contact_force() const;          // of a packing that carries something [N/m]
   double find_depth();
   void catch_problem(double dt);
   void flow(double dt);
@@ -166,6 +175,7 @@ class ImplicitDynamics {
   std::vector<Vec<2>> impulse_start_;
   std::vector<Vec<2>> wall_impulse_;
   int failed_grain_ = -1;
+  bool slow_ = false;  // the whole step is longer than the one whose inertia A has
   MassDamping damping_;
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/soft/history.hpp"
 
 namespace softgrain {
@@ -96,6 +97,23 @@ double SoftGrains::kinetic_energy() const {
       for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) sum += energy[lane];
     }
   return sum;
+}
+
+int SoftGrains::runaway_grain(double dt) const {
+  std::vector<int> runaway(batches.size(), -1);
+  parallel_for(static_cast<int>(batches.size()), [&](int b) {
+    const GrainBatch& batch = batches[b];
+    Wide sum = 0.0;
+    for (const Vec<2, Wide>& v : batch.velocity) sum += dot(v, v);
+    const double nodes = static_cast<double>(batch.velocity.size());
+    for (int lane = Wide::size - 1; lane >= 0; --lane)
+      if (batch.grain[lane] >= 0 &&
+          !(dt * std::sqrt(sum[lane] / nodes) < largest_motion * batch.radius[lane]))
+        runaway[b] = batch.grain[lane];
+  });
+  for (const int grain : runaway)
+    if (grain >= 0) return grain;
+  return -1;
 }
 
 }  // namespace softgrain

@@ -85,12 +85,17 @@ class SoftGrains {
   Vec<2> node_position(int grain, int node) const;
   Vec<2> momentum() const;        ///< sum_i m_i v_i [kg m/s per m]
   double kinetic_energy() const;  ///< sum_i 1/2 m_i v_i^2 [J/m]
+  /// First grain that moves by more than half its radius in dt (root mean square of its nodes), or not by a
+  /// number; -1 if none does.
+  int runaway_grain(double dt) const;
 
   AnyLaw law;
   double density = 0;  ///< rho [kg/m^3]
   std::vector<GrainBatch> batches;
 
  private:
+  static constexpr double largest_motion = 0.5;
+
   struct Place {
     int batch = 0, lane = 0;
   };
