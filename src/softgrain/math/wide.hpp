@@ -106,10 +106,8 @@ inline Lanes exp(Lanes x) {
     sum = inverse_factorial + r * sum;
   const Bits power = (reinterpret_cast<Bits>(shifted) << 52) + 0x3ff0000000000000;
   const Lanes result = (1.0 + (r + r * r * sum)) * reinterpret_cast<Lanes>(power);
-  const Lanes above = x < lowest    ? splat(0.0)
-                      : x > highest ? splat(std::numeric_limits<double>::infinity())
-                                    : result;
-  return x == x ? above : x;  // NaN stays
+  const Lanes beyond = x > highest ? splat(std::numeric_limits<double>::infinity()) : x;  // or NaN
+  return x < lowest ? splat(0.0) : x <= highest ? result : beyond;
 }
 inline Wide exp(const Wide& x) { return {exp(x.low), exp(x.high)}; }
 inline double exp(double x) { return std::exp(x); }
