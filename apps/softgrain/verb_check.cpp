@@ -93,8 +93,7 @@ void print_advice(const Advice& advice) {
   if (advice.blow > most_of_a_blow)
     fmt::print(stderr,
                "warning: walls at this speed strike with rho c v = {:.2g} times the yield stress, and points "
-               "may turn "
-               "inside out: lower loading.wall_velocity to below {:.1g} of what it is\n",
+               "may turn inside out: lower loading.wall_velocity to below {:.1g} of what it is\n",
                advice.blow, most_of_a_blow / advice.blow);
   if (advice.time_step > advice.longest_step)
     fmt::print(stderr,

@@ -1,7 +1,6 @@
 #include "softgrain/experiment/advice.hpp"
 
 #include <cmath>
-#include <variant>
 
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/estimate.hpp"
@@ -27,9 +26,8 @@ double stress_of(const Case& c) {
 
 double blow_of(const Case& c) {
   if (!flows(c)) return 0;
-  const double wave = std::visit([&](const auto& law) { return law.wave_speed(c.grain.density); },
-                                 make_law(c.mpm.law, c.mpm.material));
-  return c.grain.density * wave * c.loading.wall_velocity / c.mpm.material.yield_stress;
+  const double c_wave = wave_speed(make_law(c.mpm.law, c.mpm.material), c.grain.density);
+  return c.grain.density * c_wave * c.loading.wall_velocity / c.mpm.material.yield_stress;
 }
 
 /// |d eps/dt| d at the start [m/s].

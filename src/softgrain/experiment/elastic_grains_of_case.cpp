@@ -2,7 +2,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <variant>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
@@ -43,7 +42,7 @@ Box<2> box_of_grain(const Case& c, const Topology& shape) {
 double tolerance_of(const Case& c, const SoftGrains& grains, double height) {
   if (c.loading.hold_stress == 0) return c.mpm.tolerance;
   constexpr double share = 0.01;  // of the stress
-  const double wave = std::visit([&](const auto& law) { return law.wave_speed(grains.density); }, grains.law);
+  const double wave = wave_speed(grains.law, grains.density);
   const double modulus = grains.density * wave * wave;
   return std::min(c.mpm.tolerance, share * c.loading.hold_stress / modulus * height / grains.radius(0));
 }

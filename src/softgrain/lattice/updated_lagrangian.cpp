@@ -292,8 +292,7 @@ Mat<2> UpdatedLagrangianDynamics::stress(int grain, int point) const {
 }
 
 double stable_time_step(const AnyLaw& law, double density, double cell, double safety) {
-  const double speed = std::visit([&](const auto& material) { return material.wave_speed(density); }, law);
-  return safety * cell / speed;
+  return safety * cell / wave_speed(law, density);
 }
 
 }  // namespace softgrain

@@ -28,4 +28,8 @@ bool has_history(const AnyLaw& law) {
   return std::visit([]<class Law>(const Law&) { return HistoryLaw<Law, 2>; }, law);
 }
 
+double wave_speed(const AnyLaw& law, double density) {
+  return std::visit([&](const auto& some) { return some.wave_speed(density); }, law);
+}
+
 }  // namespace softgrain

@@ -93,6 +93,9 @@ constexpr const LawChoice& law_choice(MaterialLaw law) { return law_table[static
 /// True for laws that remember: they flow.
 bool has_history(const AnyLaw& law);
 
+/// Of pressure waves in the unstrained material [m/s].
+double wave_speed(const AnyLaw& law, double density);
+
 /// Raises UsageError for parameters that the law cannot have.
 inline AnyLaw make_law(MaterialLaw law, const MaterialParameters& parameters) {
   return law_choice(law).make(parameters);

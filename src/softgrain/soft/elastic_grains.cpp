@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 #include <type_traits>
-#include <variant>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
@@ -16,11 +15,6 @@ namespace {
 
 /// Of the last correction of Newton's method.
 double residual_limit(const ImplicitOptions& options) { return options.tolerance; }
-
-/// Speed of pressure waves in a grain [m/s].
-double wave_speed(const SoftGrains& grains) {
-  return std::visit([&](const auto& law) { return law.wave_speed(grains.density); }, grains.law);
-}
 
 /// Raises IoError for numbers that cannot be.
 void visit_sub_steps(ImplicitDynamics& dynamics, StateVisitor& visit) {
@@ -119,9 +113,7 @@ Numbers ElasticGrains<Dynamics>::numbers(const Box<2>& box) const {
     numbers.emplace_back("yielding", dynamics_.last_flow.share);
   }
   if (!box.closed()) {
-    double start_area = 0;
-    for (int g = 0; g < grains.size(); ++g) start_area += grains.mass(g) / grains.density;
-    numbers.emplace_back("area_ratio", outlines().area / start_area);
+    numbers.emplace_back("area_ratio", outlines().area / grains.undeformed_area());
   }
   return numbers;
 }
@@ -139,7 +131,7 @@ SoftView ElasticGrains<Dynamics>::view() const {
 /// ones is that of an eighth of a full box: less, and the stress of a step shakes the wall.
 template <class Dynamics>
 WallBody ElasticGrains<Dynamics>::wall_body(const Box<2>& box, double dt) const {
-  const double c = wave_speed(dynamics_.grains), rho = density(), height = box.height();
+  const double c = wave_speed(dynamics_.grains.law, density()), rho = density(), height = box.height();
   if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>)
     return {.damper = rho * c * std::max(0.0, 1 - c * dt / height)};
   return {.mass = rho * height / 8, .damper = rho * c, .patience = height / c};

@@ -55,7 +55,6 @@ ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
        {&outline_velocity_, &outline_velocity_start_, &outline_.start, &outline_.position})
     of_vertices->resize(grains.outline_size());
   batch_step_.resize(grains.batches.size());
-  flows_ = has_history(grains.law);
 }
 
 SoftStepReport ExplicitDynamics::step(double dt) {
@@ -119,7 +118,7 @@ void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
   const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction, solver);
   impulse_time = dt;
   drift_outline(dt);
-  if (flows_) add_flow();
+  if (has_history(grains.law)) add_flow();
   add_contact_work(dt);
 
   ++report.iterations;

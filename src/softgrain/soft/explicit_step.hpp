@@ -92,7 +92,6 @@ class ExplicitDynamics {
   OutlineNeighbours neighbours_;
   OutlineState outline_;
   std::vector<Vec<2>> outline_velocity_, outline_velocity_start_;
-  bool flows_ = false;                // the law has a history
   std::vector<double> inverse_mass_;  // (outline vertices)
   std::vector<Vec<2>> wall_impulse_;
   LumpedContacts::Scratch lumped_scratch_;

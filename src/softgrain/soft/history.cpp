@@ -41,12 +41,6 @@ template <class Law>
   return {sum.dissipated * square, sum.flowing * square};
 }
 
-double area(const SoftGrains& grains) {
-  double area = 0;
-  for (int g = 0; g < grains.size(); ++g) area += grains.mass(g) / grains.density;
-  return area;
-}
-
 }  // namespace
 
 std::vector<Wide> undeformed_history(const AnyLaw& law, const Topology& topology) {
@@ -72,7 +66,7 @@ FlowOfGrains sum_of(const SoftGrains& grains, std::span<const FlowOfStep> of_bat
       sum.dissipated += of_batches[b].dissipated[lane];
       sum.share += of_batches[b].flowing[lane];
     }
-  sum.share /= area(grains);
+  sum.share /= grains.undeformed_area();
   return sum;
 }
 
@@ -91,7 +85,7 @@ PlasticStrain plastic_strain(const SoftGrains& grains) {
         }
       }
   });
-  strain.mean /= area(grains);
+  strain.mean /= grains.undeformed_area();
   return strain;
 }
 

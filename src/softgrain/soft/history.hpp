@@ -14,12 +14,6 @@ std::vector<Wide> undeformed_history(const AnyLaw& law, const Topology& topology
 struct FlowOfStep {
   Wide dissipated = 0.0;  ///< [J/m]
   Wide flowing = 0.0;     ///< area of the undeformed points that flowed [m^2]
-
-  FlowOfStep& operator+=(const FlowOfStep& b) {
-    dissipated += b.dissipated;
-    flowing += b.flowing;
-    return *this;
-  }
 };
 
 /// The history of the eight grains after a step of dt [s] that ends at their positions, which must be

@@ -49,11 +49,8 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
     mean_radius_ += grains.radius(g) / grains.size();
     smallest_radius_ = std::min(smallest_radius_, grains.radius(g));
   }
-  flows_ = has_history(grains.law);
   explicit_step_ = stable_time_step(grains, 1);
-  const double wave_speed =
-      std::visit([&](const auto& law) { return law.wave_speed(grains.density); }, grains.law);
-  wave_time_ = smallest_radius_ / wave_speed;
+  wave_time_ = smallest_radius_ / wave_speed(grains.law, grains.density);
   for (const GrainBatch& batch : grains.batches) {
     matrix_.emplace_back(batch.topology->pattern);
     const std::size_t width = 2 * batch.topology->grid.outline_nodes();
@@ -100,8 +97,7 @@ void ImplicitDynamics::give_up(Failure failure, double dt) const {
                                                               : "Newton's method does not converge";
   throw NumericalError(
       fmt::format("the implicit step failed even at dt = {:.3g} s, {:.3g} of the explicit step: {} in grain "
-                  "{}; use a finer "
-                  "grid (mpm.cells) or a larger mpm.tolerance, or end at a smaller strain",
+                  "{}; use a finer grid (mpm.cells) or a larger mpm.tolerance, or end at a smaller strain",
                   dt, dt / explicit_step_, cause, failed_grain_));
 }
 
@@ -112,7 +108,7 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
   Failure failure = factor(dt, proximal, report);
   if (failure == Failure::indefinite_matrix) failure = factor(dt, 4 * proximal, report);
   Imbalance left;
-  const int renewal = flows_ ? 1 : refactor_every;  // docs/decisions/0038
+  const int renewal = has_history(grains.law) ? 1 : refactor_every;  // docs/decisions/0038
   for (int iteration = 1; failure == Failure::none; ++iteration) {
     if ((failure = residual(dt)) != Failure::none) break;
     const bool contacts_solved = solve_contacts(dt, report);
@@ -252,7 +248,7 @@ double ImplicitDynamics::find_depth() {
 
 /// The history of the points after a step that nothing takes back any more.
 void ImplicitDynamics::flow(double dt) {
-  if (!flows_) return;
+  if (!has_history(grains.law)) return;
   std::vector<FlowOfStep> flows(grains.batches.size());
   parallel_for(batches(), [&](int b) { flows[b] = advance_history(grains, grains.batches[b], dt); });
   last_flow = sum_of(grains, flows);

@@ -152,7 +152,6 @@ class ImplicitDynamics {
   std::vector<double> friction_of_contacts() const;
 
   double mean_radius_ = 0, smallest_radius_ = 0;
-  bool flows_ = false;        // the law has a history
   double explicit_step_ = 0;  // h/c [s]
   double wave_time_ = 0;      // R/c of the smallest grain [s]
   OutlineNeighbours neighbours_;

@@ -99,6 +99,12 @@ double SoftGrains::kinetic_energy() const {
   return sum;
 }
 
+double SoftGrains::undeformed_area() const {
+  double sum = 0;
+  for (int g = 0; g < size(); ++g) sum += mass(g) / density;
+  return sum;
+}
+
 int SoftGrains::runaway_grain(double dt) const {
   std::vector<int> runaway(batches.size(), -1);
   parallel_for(static_cast<int>(batches.size()), [&](int b) {

@@ -83,8 +83,9 @@ class SoftGrains {
     return {&batches[place_[grain].batch], place_[grain].lane};
   }
   Vec<2> node_position(int grain, int node) const;
-  Vec<2> momentum() const;        ///< sum_i m_i v_i [kg m/s per m]
-  double kinetic_energy() const;  ///< sum_i 1/2 m_i v_i^2 [J/m]
+  Vec<2> momentum() const;         ///< sum_i m_i v_i [kg m/s per m]
+  double kinetic_energy() const;   ///< sum_i 1/2 m_i v_i^2 [J/m]
+  double undeformed_area() const;  ///< of all grains [m^2]
   /// First grain that moves by more than half its radius in dt (root mean square of its nodes), or not by a
   /// number; -1 if none does.
   int runaway_grain(double dt) const;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <variant>
 
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/soft/equilibrium.hpp"
@@ -100,9 +99,7 @@ double stable_time_step(const SoftGrains& grains, double safety) {
         shortest =
             std::min(shortest, grains.radius(g) * norm(grid.node[cell[a]] - grid.node[cell[(a + 1) % 4]]));
   }
-  const double speed =
-      std::visit([&](const auto& law) { return law.wave_speed(grains.density); }, grains.law);
-  return safety * shortest / speed;
+  return safety * shortest / wave_speed(grains.law, grains.density);
 }
 
 double longest_stable_step(const SoftGrains& grains, double damping_share) {

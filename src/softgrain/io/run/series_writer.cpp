@@ -74,8 +74,7 @@ void SeriesWriter::write_row(const std::vector<Quantity>& row) {
   if (header_.empty()) file_.append(header + "\n");
   require(header_.empty() || header == header_,
           "the columns of series.csv differ from those that this version writes; resume with the version "
-          "that began "
-          "the run\n"
+          "that began the run\n"
           "  series:  {}\n  program: {}",
           header_, header);
   header_ = header;
