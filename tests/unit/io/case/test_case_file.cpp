@@ -7,26 +7,12 @@
 #include "softgrain/experiment/create.hpp"
 #include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/case/case_text.hpp"
+#include "support/case_refusal.hpp"
 #include "support/temporary_directory.hpp"
 
 using namespace softgrain;
-
-namespace {
-
-std::string refusal(const std::string& text, const std::vector<std::string>& sets = {}) {
-  try {
-    parse_case(text, "case.toml", sets);
-  } catch (const CaseFileError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool mentions(const std::string& text, const std::string& word) {
-  return text.find(word) != std::string::npos;
-}
-
-}  // namespace
+using test::mentions;
+using test::refusal;
 
 TEST_CASE("an empty case is the default case") {
   const Case read = parse_case("", "case.toml");

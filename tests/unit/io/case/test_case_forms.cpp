@@ -5,23 +5,13 @@
 
 #include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/case/case_text.hpp"
+#include "support/case_refusal.hpp"
 
 using namespace softgrain;
+using test::mentions;
+using test::refusal;
 
 namespace {
-
-std::string refusal(const std::string& text, const std::vector<std::string>& sets = {}) {
-  try {
-    parse_case(text, "case.toml", sets);
-  } catch (const CaseFileError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool mentions(const std::string& text, const std::string& word) {
-  return text.find(word) != std::string::npos;
-}
 
 /// The resolved case, all that a case says.
 std::string resolved(const std::string& text, const std::vector<std::string>& sets = {}) {

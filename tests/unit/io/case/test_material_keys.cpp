@@ -5,23 +5,13 @@
 
 #include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/case/scope.hpp"
+#include "support/case_refusal.hpp"
 
 using namespace softgrain;
+using test::mentions;
+using test::refusal;
 
 namespace {
-
-std::string refusal(const std::string& text) {
-  try {
-    parse_case(text, "case.toml", {});
-  } catch (const CaseFileError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool mentions(const std::string& text, const std::string& word) {
-  return text.find(word) != std::string::npos;
-}
 
 const std::string mpm = "[experiment]\nmodel = 'mpm'\n[mpm]\n";
 
