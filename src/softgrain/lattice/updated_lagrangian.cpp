@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <variant>
 
 #include "softgrain/contact/nlgs.hpp"
@@ -16,9 +17,9 @@ namespace {
 constexpr double least_outline_share = 1e-3, least_node_share = 1e-5;
 
 /// visit(law) of an elastic law: points that move through the lattice do not keep what they remember.
-template <class Visit>
-auto with_elastic(const AnyLaw& law, Visit&& visit) {
-  const auto elastic = [&]<class Law>(const Law& some) -> decltype(visit(Hencky{})) {
+template <class Visit, class Result = std::invoke_result_t<Visit, const Hencky&>>
+Result with_elastic(const AnyLaw& law, Visit&& visit) {
+  const auto elastic = [&]<class Law>(const Law& some) -> Result {
     if constexpr (ElasticLaw<Law, 2>) return visit(some);
     throw UsageError("the updated Lagrangian formulation takes elastic laws only, none that flows");
   };
