@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "softgrain/geometry/press.hpp"
 #include "softgrain/geometry/wall.hpp"
 #include "softgrain/math/vec.hpp"
 #include "softgrain/state/field.hpp"
@@ -20,9 +21,10 @@ struct Box {
   std::vector<Wall<Dim>> walls;      ///< bottom, top, then left, right, ... of the axes that have walls
   std::vector<Vec<Dim>> impulse;     ///< (walls) of the grains on each in the last step [N s/m in 2D]
   std::array<double, Dim> period{};  ///< [m] along each axis, 0: not periodic
+  std::vector<Press> presses;        ///< that move some of the walls; no wall belongs to two
 
   Box() = default;
-  explicit Box(std::vector<Wall<Dim>> all) : walls(std::move(all)), impulse(walls.size()) {}
+  Box(std::vector<Wall<Dim>> all) : walls(std::move(all)), impulse(walls.size()) {}
 
   /// True if walls face each other along the axis.
   bool bounded(int axis) const { return walls.size() >= 2 * static_cast<std::size_t>(Dim - axis); }

@@ -65,6 +65,12 @@ struct WallBody {
   double patience = 1;  ///< tau [s]
 };
 
+/// Mass and damper of a press, over the area of its walls.
+struct PressBody {
+  double mass = 0;    ///< [kg/m^2]
+  double damper = 0;  ///< [Pa s/m]
+};
+
 /// Grains in a box, however they are modelled. A model knows no case, no path, no row and no file.
 class Model {
  public:
@@ -103,6 +109,9 @@ class Model {
   virtual std::vector<GrainView> grains() const = 0;
 
   virtual WallBody wall_body(const Box<2>&, double) const { return {}; }
+  /// Of a press along an axis, so that it is damped critically by grains of this stiffness in steps of dt
+  /// [s], or more where they are softer.
+  virtual PressBody press_body(const Box<2>&, int /*axis*/, double /*dt*/) const { return {}; }
 
   /// Keeps the contact problem of the next step, with its impulses per metre of depth; where a step solves
   /// several, the last. Raises UsageError where no such problem can be had.
