@@ -36,6 +36,15 @@ class DelassusSystem {
     return u;
   }
   void apply_impulse(int contact, const Vec<Dim>& dp) { impulse_[contact] += dp; }
+  /// u <- u + b (u - u'), u' the velocities when this was last called.
+  void extrapolate(double b) {
+    before_.resize(impulse_.size());
+    for (std::size_t c = 0; c < impulse_.size(); ++c) {
+      const Vec<Dim> p = impulse_[c];
+      if (b > 0) impulse_[c] += b * (p - before_[c]);
+      before_[c] = p;
+    }
+  }
 
   std::span<const Vec<Dim>> free_velocity() const { return free_velocity_; }  ///< q [m/s]
 
@@ -47,7 +56,7 @@ class DelassusSystem {
   std::vector<std::size_t> row_start_;
   std::vector<Block> blocks_;
   std::vector<Mat<Dim>> diagonal_;
-  std::vector<Vec<Dim>> free_velocity_, impulse_;
+  std::vector<Vec<Dim>> free_velocity_, impulse_, before_;
 };
 
 template <int Dim>

@@ -1,7 +1,9 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
+#include <vector>
 
 #include "softgrain/contact/contact_system.hpp"
 #include "softgrain/contact/law.hpp"
@@ -17,6 +19,44 @@ template <class S, int Dim>
 concept HasOwnSweep = requires(S& s, std::span<Vec<Dim>> impulse, std::span<const double> friction,
                                const SolverOptions& options) {
   { s.sweep(impulse, friction, options) } -> std::same_as<Violation>;
+};
+
+/// A system whose sweeps may start ahead of where the last one ended: extrapolate(b) makes its velocities
+/// v + b (v - v'), v' those when it was last called.
+template <class S>
+concept Extrapolates = requires(S& s, double b) {
+  {s.extrapolate(b)};
+};
+
+/// Nesterov's momentum around the sweeps: sweep k + 1 starts from
+///   y = p_k + b (p_k - p_k-1),  b = (t_k - 1)/t_k+1,  t_k+1 = (1 + sqrt(1 + 4 t_k^2))/2,
+/// and from p_k, with t anew, once the violation has grown. The velocities are linear in p, so that they go
+/// ahead alike; a sweep puts every impulse right, so that y may leave the cones of friction.
+template <int Dim>
+class Extrapolation {
+ public:
+  /// Before a sweep.
+  template <Extrapolates System>
+  void go_ahead(System& system, std::span<Vec<Dim>> impulse) {
+    const double next = 0.5 * (1 + std::sqrt(1 + 4 * t_ * t_)), b = (t_ - 1) / next;
+    t_ = next;
+    before_.resize(impulse.size());
+    for (std::size_t c = 0; c < impulse.size(); ++c) {
+      const Vec<Dim> p = impulse[c];
+      if (b > 0) impulse[c] += b * (p - before_[c]);
+      before_[c] = p;
+    }
+    system.extrapolate(b);
+  }
+  /// After it.
+  void see(const Violation& violation) {
+    if (violation.sum_of_squares > least_) t_ = 1;
+    least_ = violation.sum_of_squares;
+  }
+
+ private:
+  double t_ = 1, least_ = std::numeric_limits<double>::infinity();
+  std::vector<Vec<Dim>> before_;
 };
 
 /// The turn of one contact: it is solved exactly with the others frozen,
@@ -72,11 +112,17 @@ SolverReport solve_nlgs(System& system, std::span<Vec<Dim>> impulse, std::span<c
                         const SolverOptions& options) {
   const double scale =
       options.velocity_scale > 0 ? options.velocity_scale : typical_velocity<Dim>(system, impulse);
+  Extrapolation<Dim> ahead;
   const auto sweep = [&](bool /*measured*/) {
+    if constexpr (Extrapolates<System>)
+      if (options.extrapolated) ahead.go_ahead(system, impulse);
+    Violation violation;
     if constexpr (HasOwnSweep<System, Dim>)
-      return system.sweep(impulse, friction, options);
+      violation = system.sweep(impulse, friction, options);
     else
-      return nlgs_sweep<Dim>(system, impulse, friction, options.relaxation);
+      violation = nlgs_sweep<Dim>(system, impulse, friction, options.relaxation);
+    ahead.see(violation);
+    return violation;
   };
   return repeat_sweeps(sweep, scale, options);
 }

@@ -17,6 +17,7 @@ struct PushedBody {
   double most = 0;      ///< v_most [m/s]
   double assumed = 0;   ///< v for which a ContactSystem gives the velocities of the contacts [m/s]
   double push = 0;      ///< sum_c share_c p_n,c [N s]
+  double before = 0;    ///< the same when it was last extrapolated
 
   double velocity() const { return std::clamp(free - mobility * push, -most, most); }
 };
@@ -43,6 +44,15 @@ struct PushedBodies {
     pushes[static_cast<std::size_t>(pushing.contact)] = 1;
     contacts.push_back(pushing);
     bodies[static_cast<std::size_t>(pushing.body)].push += pushing.share * p_n;
+  }
+
+  /// The pushes go ahead as impulses do (Extrapolation).
+  void extrapolate(double b) {
+    for (PushedBody& body : bodies) {
+      const double push = body.push;
+      body.push += b * (push - body.before);
+      body.before = push;
+    }
   }
 
   /// The turns of their contacts in a sweep of nonlinear Gauss-Seidel, with

@@ -12,6 +12,7 @@ struct SolverOptions {
                               ///< overlap gained in a step over a diameter. 0: rms of u_c - W_cc p_c at
                               ///< the start, which from p = 0 is q.
   double relaxation = 1;      ///< omega of p <- p + omega (p_new - p), in (0, 2) without friction
+  bool extrapolated = false;  ///< NLGS starts each sweep ahead of the last, see Extrapolation
   int check_every = 10;  ///< iterations of Nesterov's method between two looks at the violation; NLGS sees
                          ///< it in passing, in every sweep
 };

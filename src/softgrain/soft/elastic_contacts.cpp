@@ -194,6 +194,16 @@ Violation ElasticContacts::sweep(std::span<Vec<2>> impulse, std::span<const doub
   return sum;
 }
 
+void ElasticContacts::extrapolate(double b) {
+  before_.resize(velocity_.size());
+  for (std::size_t i = 0; i < velocity_.size(); ++i) {
+    const double v = velocity_[i];
+    if (b > 0) velocity_[i] += b * (v - before_[i]);
+    before_[i] = v;
+  }
+  if (pushed_) pushed_->extrapolate(b);
+}
+
 std::vector<Vec<2>> contact_forces(const SoftGrains& grains, std::span<const OutlineContact> contacts,
                                    std::span<const Vec<2>> impulse, double dt) {
   std::vector<Vec<2>> force(grains.outline_size());

@@ -54,6 +54,8 @@ class ElasticContacts {
   void apply_impulses(std::span<const Vec<2>> impulse);
   /// One sweep of NLGS, on all threads: every second group of contacts, then the others (ContactLevels).
   Violation sweep(std::span<Vec<2>> impulse, std::span<const double> friction, const SolverOptions& options);
+  /// v <- v + b (v - v'), v' the velocities when this was last called.
+  void extrapolate(double b);
   /// Sweeps then move these bodies too. Keeps a reference.
   void push(PushedBodies& bodies) { pushed_ = &bodies; }
 
@@ -92,6 +94,7 @@ class ElasticContacts {
   std::vector<int> local_;   // (outline vertices) place among the grain's vertices in contact, -1 if none
   std::vector<int> vertex_;  // the vertices in contact, by their number along the outline
   std::vector<double> velocity_;  // v of the vertices in contact, grain by grain
+  std::vector<double> before_;    // the same when they were last extrapolated
   std::vector<Contact> contact_;
   // A^-1 H_c/dt^2 on the slave's, then on the master's grain; those of n come before those of t. In single
   // precision, as they are what a sweep reads.

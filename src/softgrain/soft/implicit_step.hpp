@@ -34,11 +34,12 @@ struct ImplicitOptions {
   /// A is factored in single precision for steps up to this many explicit ones (h/c, stable_time_step); its
   /// condition is about 4 times the square of their ratio (docs/decisions/0019). 0: never
   double single_precision_steps = 60;
-  SolverOptions solver{.max_sweeps = 500};  ///< NLGS, to a quarter of Newton's tolerance
-  double friction = 0;                      ///< mu between grains
-  double wall_friction = 0;                 ///< mu against walls
-  Vec<2> gravity{};                         ///< [m/s^2]
-  double damping = 0;                       ///< zeta [1/s], see MassDamping
+  SolverOptions solver{.max_sweeps = 500,
+                       .extrapolated = true};  ///< NLGS, to a quarter of Newton's tolerance
+  double friction = 0;                         ///< mu between grains
+  double wall_friction = 0;                    ///< mu against walls
+  Vec<2> gravity{};                            ///< [m/s^2]
+  double damping = 0;                          ///< zeta [1/s], see MassDamping
 };
 
 /// Soft grains between walls by backward Euler with position-level contact (docs/theory.md, implicit MPM):
@@ -134,8 +135,7 @@ class ImplicitDynamics {
   double unbalanced_force(std::span<const Vec<2>> contact_force) const;
   void follow_secant(bool accelerated);
   void follow_momentum(bool first, bool accelerated);
-  double mean_contact_force(double dt) const;  // sum of all, over the number of grains [N/m]
-  double least_contact_force() const;          // of a packing that carries something [N/m]
+  double least_contact_force() const;  // of a packing that carries something [N/m]
   double find_depth();
   void catch_problem(double dt);
   void flow(double dt);

@@ -50,6 +50,33 @@ TEST_CASE("a falling column is stopped by impulses that carry the momentum above
   CHECK(column.velocity().cwiseAbs().maxCoeff() < 1e-11);
 }
 
+TEST_CASE("sweeps that start ahead of the last find the same impulses in fewer sweeps") {
+  SolverOptions ahead = tight;
+  ahead.extrapolated = true;
+  int plain_sweeps = 0, ahead_sweeps = 0;
+  for (const double mu : {0.0, 0.3}) {
+    Solve<2> plain(falling_column(30, 2, 0.5)), fast = plain;
+    plain.problem.friction.assign(30, mu);
+    fast.problem.friction.assign(30, mu);
+    const SolverReport slow_report = plain.nlgs(tight), fast_report = fast.nlgs(ahead);
+    CHECK(slow_report.converged);
+    CHECK(fast_report.converged);
+    plain_sweeps += slow_report.sweeps;
+    ahead_sweeps += fast_report.sweeps;
+    for (int k = 0; k < 30; ++k) {
+      CHECK(fast.p[k][0] == doctest::Approx((30 - k) * 2 * 0.5).epsilon(1e-8));
+      CHECK(fast.p[k][0] == doctest::Approx(plain.p[k][0]).epsilon(1e-8));
+    }
+    CHECK(fast.velocity().cwiseAbs().maxCoeff() < 1e-10);
+  }
+  CHECK(ahead_sweeps < plain_sweeps / 4);
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Solve<2> solve(random_problem(2, 8, 0.4, seed));
+    CHECK(solve.nlgs(ahead).converged);
+    CHECK(law_defects(solve.problem, solve.impulse(), solve.velocity()).worst() < 1e-9);
+  }
+}
+
 TEST_CASE_TEMPLATE("NLGS finds impulses that obey Signorini and Coulomb in every contact", Dim,
                    std::integral_constant<int, 2>, std::integral_constant<int, 3>) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
