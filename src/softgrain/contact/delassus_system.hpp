@@ -67,7 +67,7 @@ DelassusSystem<Dim>::DelassusSystem(std::span<const MatrixEntry> entries,
       free_velocity_(free_velocity.begin(), free_velocity.end()),
       impulse_(free_velocity.size()) {
   std::vector<MatrixEntry> sorted(entries.begin(), entries.end());
-  std::ranges::stable_sort(sorted, [](const MatrixEntry& a, const MatrixEntry& b) {
+  std::stable_sort(sorted.begin(), sorted.end(), [](const MatrixEntry& a, const MatrixEntry& b) {
     return std::pair(a.row / Dim, a.column / Dim) < std::pair(b.row / Dim, b.column / Dim);
   });
   int last_row = -1;

@@ -68,12 +68,13 @@ BondedGrainsSetup setup_between_walls(const Case& c) {
 BondedGrainsSetup setup_in_a_box(const Case& c) {
   const BoxSample box = sample_box(c);
   BpmSample sample = fill_box(box, prepare_library(library_of(c)), library_of(c));
+  const double smallest = *std::min_element(sample.mean_distance.begin(), sample.mean_distance.end());
   BondedGrainsSetup setup{.particles = std::move(sample.particles),
                           .grain_radius = {},
                           .laws = {},
                           .friction = {},
                           .options = {},
-                          .skin = skin_in_a_box * std::ranges::min(sample.mean_distance),
+                          .skin = skin_in_a_box * smallest,
                           .density = 0,
                           .sigma_I = c.bpm.cohesive_pressure};
   for (const PlacedGrain& grain : box.grains) setup.grain_radius.push_back(grain.radius);

@@ -37,8 +37,9 @@ DiameterLaw diameter_law(const Case::Sample& sample) {
 Case complete_sample(Case c) {
   Case::Sample& sample = c.sample;
   if (sample.sizes == SizeLaw::list && !sample.diameters.empty()) {
-    sample.smallest_diameter = std::ranges::min(sample.diameters);
-    sample.largest_diameter = std::ranges::max(sample.diameters);
+    const auto [smallest, largest] = std::minmax_element(sample.diameters.begin(), sample.diameters.end());
+    sample.smallest_diameter = *smallest;
+    sample.largest_diameter = *largest;
   }
   if (sample.placed.empty()) return c;
   constexpr double infinite = std::numeric_limits<double>::infinity();

@@ -151,7 +151,7 @@ PackingMeasures Simulation::packing() const {
 }
 
 void Simulation::begin_row() {
-  std::ranges::fill(row_.impulse, 0.0);
+  std::fill(row_.impulse.begin(), row_.impulse.end(), 0.0);
   row_.duration = 0;
   model_->begin_row();
 }

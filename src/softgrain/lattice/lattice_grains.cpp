@@ -115,7 +115,9 @@ Numbers LatticeGrains::numbers(const Box<2>&) const {
     area += grain.area();
     for (const Mat<2>& F : grain.F) least_J = std::min(least_J, determinant(F));
   }
-  const auto contacts = std::ranges::count_if(dynamics_.impulse, [](const Vec<2>& p) { return p[0] > 0; });
+  const std::vector<Vec<2>>& impulse = dynamics_.impulse;
+  const auto contacts =
+      std::count_if(impulse.begin(), impulse.end(), [](const Vec<2>& p) { return p[0] > 0; });
   numbers.emplace_back("contacts", contacts);
   numbers.emplace_back("least_J", least_J);
   numbers.emplace_back("area_ratio", outlines().area / area);

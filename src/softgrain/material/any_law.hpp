@@ -34,7 +34,8 @@ struct LawChoice {
   constexpr bool flows() const { return takes(&MaterialParameters::yield_stress); }
   constexpr bool takes(Parameter parameter) const {
     return parameter == &MaterialParameters::young_modulus ||
-           parameter == &MaterialParameters::poisson_ratio || std::ranges::count(more, parameter) > 0;
+           parameter == &MaterialParameters::poisson_ratio ||
+           std::count(more.begin(), more.end(), parameter) > 0;
   }
 };
 

@@ -3,16 +3,12 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "softgrain/observe/energy.hpp"
 #include "softgrain/observe/packing_measures.hpp"
 
 namespace softgrain {
-
-/// Numbers by the names of their columns.
-using Numbers = std::vector<std::pair<std::string_view, double>>;
 
 /// What the steps since the last row took: means over them, and maxima.
 struct StepMeans {
@@ -35,8 +31,12 @@ struct Observation {
   Numbers numbers;  ///< of the model alone
   std::optional<StepMeans> means;
 
+  /// Of the model or the packing.
   std::optional<double> number(std::string_view name) const {
     for (const auto& [of, value] : numbers)
+      if (of == name) return value;
+    if (!packing) return std::nullopt;
+    for (const auto& [of, value] : packing->numbers)
       if (of == name) return value;
     return std::nullopt;
   }

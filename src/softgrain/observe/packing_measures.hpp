@@ -1,5 +1,8 @@
 #pragma once
 #include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "softgrain/math/tensor.hpp"
 #include "softgrain/observe/contact_network.hpp"
@@ -22,17 +25,17 @@ struct PackingView {
   double strain_rate = 0;            ///< [1/s]
 };
 
+/// Numbers by the names of their columns.
+using Numbers = std::vector<std::pair<std::string_view, double>>;
+
 /// What a packing shows, the same for every model; columns.cpp defines each. A column of contacts comes from
 /// the network by a function of its own.
 struct PackingMeasures {
   ContactNetwork network{};
   PackingFraction phi{};
   Coordination coordination{};
-  double sides = 0;
-  Mat<2> stress{};            ///< of contacts and motion, compression positive [Pa]
-  double stress_kinetic = 0;  ///< [Pa]
-  double inertial_number = 0;
-  double circularity = 0, aspect_ratio = 0;
+  Mat<2> stress{};  ///< of contacts and motion, compression positive [Pa]
+  Numbers numbers;  ///< all others
 };
 PackingMeasures measure_packing(const PackingView& packing);
 

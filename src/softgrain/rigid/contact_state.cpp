@@ -33,11 +33,12 @@ void visit_impulses(RigidContacts<2>& contacts, StateVisitor& visit) {
   std::vector<int> sorted(contacts.size());
   std::iota(sorted.begin(), sorted.end(), 0);
   const auto by_pair = [&](int c) { return pair_of(contacts, c); };
-  std::ranges::sort(sorted, {}, by_pair);
-  std::ranges::fill(contacts.impulse, Vec<2>{});
+  std::sort(sorted.begin(), sorted.end(), [&](int a, int b) { return by_pair(a) < by_pair(b); });
+  std::fill(contacts.impulse.begin(), contacts.impulse.end(), Vec<2>{});
   for (std::size_t k = 0; k < impulse.size(); ++k) {
     const std::pair wanted(pairs[2 * k], pairs[2 * k + 1]);
-    const auto found = std::ranges::lower_bound(sorted, wanted, {}, by_pair);
+    const auto found = std::lower_bound(sorted.begin(), sorted.end(), wanted,
+                                        [&](int c, const auto& pair) { return by_pair(c) < pair; });
     if (found == sorted.end() || by_pair(*found) != wanted)
       throw IoError(
           fmt::format("the snapshot's array 'contact_pair' holds {} and {}, which do not touch here",

@@ -61,7 +61,7 @@ void RigidDynamics<Dim>::list_pressed_walls() {
   std::vector<bool> pressed;
   for (int w = 0; w < static_cast<int>(particles.walls.size()); ++w)
     pressed.push_back(particles.press_share(particles.wall_body(w)) != 0);
-  const bool changed = std::ranges::find(pressed, true) != pressed.end() || !pressed_.empty();
+  const bool changed = std::find(pressed.begin(), pressed.end(), true) != pressed.end() || !pressed_.empty();
   if (!changed || pressed == pressed_) return;
   pressed_ = std::move(pressed);
   if (reference.made.empty()) return;

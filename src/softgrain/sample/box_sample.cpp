@@ -73,8 +73,8 @@ BoxSample drawn(const BoxSampleOptions& options, int draw) {
 
 bool has_room(const BoxSample& sample, double clearance) {
   const double least = std::min(sample.width, sample.height);
-  return std::ranges::all_of(
-      sample.grains, [&](const PlacedGrain& grain) { return 2 * (1 + clearance) * grain.radius <= least; });
+  return std::all_of(sample.grains.begin(), sample.grains.end(),
+                     [&](const PlacedGrain& grain) { return 2 * (1 + clearance) * grain.radius <= least; });
 }
 
 /// Uniform places, the start-th ones, from which overlaps are pushed out. True if none is left.
@@ -175,7 +175,9 @@ std::vector<Misplaced> misplaced_grains(const BoxSample& sample) {
     const double depth = a.radius + b.radius - norm(b.centre - a.centre);
     if (depth > largest_placed_overlap * std::min(a.radius, b.radius)) faults.push_back({j, i, depth});
   });
-  std::ranges::sort(faults, {}, [](const Misplaced& fault) { return std::pair(fault.grain, fault.other); });
+  std::sort(faults.begin(), faults.end(), [](const Misplaced& a, const Misplaced& b) {
+    return std::pair(a.grain, a.other) < std::pair(b.grain, b.other);
+  });
   return faults;
 }
 

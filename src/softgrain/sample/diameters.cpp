@@ -47,7 +47,7 @@ std::vector<int> counts_of(const DiameterLaw& law, int grains) {
     left -= counts.back();
     order.push_back(static_cast<int>(order.size()));
   }
-  std::ranges::stable_sort(order, [&](int a, int b) { return remainder[a] > remainder[b]; });
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return remainder[a] > remainder[b]; });
   for (int k = 0; k < left; ++k) ++counts[order[k % order.size()]];
   return counts;
 }
@@ -74,10 +74,10 @@ double moment(const DiameterLaw& law, int power) {
 }  // namespace
 
 double DiameterLaw::least() const {
-  return law == SizeLaw::list ? *std::ranges::min_element(diameters) : smallest;
+  return law == SizeLaw::list ? *std::min_element(diameters.begin(), diameters.end()) : smallest;
 }
 double DiameterLaw::greatest() const {
-  return law == SizeLaw::list ? *std::ranges::max_element(diameters) : largest;
+  return law == SizeLaw::list ? *std::max_element(diameters.begin(), diameters.end()) : largest;
 }
 
 void check(const DiameterLaw& law) {
@@ -85,9 +85,10 @@ void check(const DiameterLaw& law) {
     require(!law.diameters.empty() && law.diameters.size() == law.numbers.size(),
             "a list of diameters needs one proportion for each: {} diameters, {} proportions",
             law.diameters.size(), law.numbers.size());
-    const auto positive = [](double number) { return number > 0; };
-    require(std::ranges::all_of(law.diameters, positive) && std::ranges::all_of(law.numbers, positive),
-            "diameters and their proportions must be > 0");
+    const auto positive = [](const std::vector<double>& numbers) {
+      return std::all_of(numbers.begin(), numbers.end(), [](double number) { return number > 0; });
+    };
+    require(positive(law.diameters) && positive(law.numbers), "diameters and their proportions must be > 0");
     return;
   }
   require(law.smallest > 0 && law.largest >= law.smallest,

@@ -97,7 +97,9 @@ template <class Dynamics>
 Numbers ElasticGrains<Dynamics>::numbers(const Box<2>& box) const {
   const SoftGrains& grains = dynamics_.grains;
   Numbers numbers = elastic_numbers(dynamics_.work, stored_energy(grains));
-  const auto contacts = std::ranges::count_if(dynamics_.impulse, [](const Vec<2>& p) { return p[0] > 0; });
+  const std::vector<Vec<2>>& impulse = dynamics_.impulse;
+  const auto contacts =
+      std::count_if(impulse.begin(), impulse.end(), [](const Vec<2>& p) { return p[0] > 0; });
   numbers.emplace_back("contacts", contacts);
   numbers.emplace_back("least_J", least_J(grains));
   numbers.emplace_back("iterations", sums_.steps > 0 ? sums_.iterations / sums_.steps : 0);

@@ -132,7 +132,8 @@ void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
   report.residual_mean = std::max(report.residual_mean, solved.residual_mean);
   report.residual = std::max(report.residual, solved.residual_max);
   report.converged = report.converged && solved.converged;
-  report.contacts = static_cast<int>(std::ranges::count_if(impulse, [](auto& p) { return p[0] != 0; }));
+  report.contacts =
+      static_cast<int>(std::count_if(impulse.begin(), impulse.end(), [](auto& p) { return p[0] != 0; }));
   add_overlaps(report);
 }
 
@@ -140,7 +141,8 @@ void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
 void ExplicitDynamics::take_back_spin() {
   if (options.wall_friction > 0) return;
   const std::vector<Wide> alone = grains_on_walls_alone(grains, contacts);
-  if (std::ranges::none_of(alone, [](const Wide& of_batch) { return any(of_batch > 0.0); })) return;
+  if (std::none_of(alone.begin(), alone.end(), [](const Wide& of_batch) { return any(of_batch > 0.0); }))
+    return;
   grains.gather_outline(outline_.start);
   work.contacts -= turn_back(grains, alone, contacts, impulse, outline_.start);
 }

@@ -102,7 +102,8 @@ double ImplicitDynamics::unbalanced_force(std::span<const Vec<2>> contact_force)
   });
   double scale = 0;
   for (const Vec<2>& f : contact_force) scale += norm(f) / grains.size();
-  return std::sqrt(std::ranges::max(largest)) / std::max(scale, least_contact_force());
+  return std::sqrt(*std::max_element(largest.begin(), largest.end())) /
+         std::max(scale, least_contact_force());
 }
 
 double ImplicitDynamics::least_contact_force() const {

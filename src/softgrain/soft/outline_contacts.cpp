@@ -161,7 +161,7 @@ bool OutlineNeighbours::moved_far(const OutlineState& state) {
     }
     parts_[k].moved_far = largest > allowed * allowed;
   });
-  return std::ranges::any_of(parts_, &Part::moved_far);
+  return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.moved_far; });
 }
 
 void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineState& state) {

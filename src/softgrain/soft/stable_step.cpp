@@ -106,7 +106,7 @@ double longest_stable_step(const SoftGrains& grains, double damping_share) {
   std::vector<double> largest(grains.batches.size());
   parallel_for(static_cast<int>(largest.size()),
                [&](int b) { largest[b] = largest_square_frequency(grains, grains.batches[b]); });
-  return 2 / std::sqrt((1 + 2 * damping_share) * *std::ranges::max_element(largest));
+  return 2 / std::sqrt((1 + 2 * damping_share) * *std::max_element(largest.begin(), largest.end()));
 }
 
 }  // namespace softgrain

@@ -11,11 +11,9 @@ namespace softgrain {
 
 namespace {
 
-using Column = std::vector<float>;
-
 /// Column `k` of an array, as floats.
-Column column_of(const Array& array, std::size_t k = 0) {
-  Column column;
+FrameColumn column_of(const Array& array, std::size_t k = 0) {
+  FrameColumn column;
   std::visit(
       [&](const auto& values) {
         for (std::size_t i = k; i < values.size(); i += array.columns)
@@ -27,14 +25,14 @@ Column column_of(const Array& array, std::size_t k = 0) {
 
 /// One number for each row: itself, the length of a vector, the largest shear of a plane tensor (xx xy yx
 /// yy). Nothing for other shapes.
-Column scalar_of(const Array& array) {
+FrameColumn scalar_of(const Array& array) {
   if (array.columns == 1) return column_of(array);
-  Column scalar;
+  FrameColumn scalar;
   if (array.columns == 2) {
-    const Column x = column_of(array, 0), y = column_of(array, 1);
+    const FrameColumn x = column_of(array, 0), y = column_of(array, 1);
     for (std::size_t i = 0; i < x.size(); ++i) scalar.push_back(std::hypot(x[i], y[i]));
   } else if (array.columns == 4) {
-    const Column xx = column_of(array, 0), xy = column_of(array, 1), yy = column_of(array, 3);
+    const FrameColumn xx = column_of(array, 0), xy = column_of(array, 1), yy = column_of(array, 3);
     for (std::size_t i = 0; i < xx.size(); ++i) scalar.push_back(std::hypot((xx[i] - yy[i]) / 2, xy[i]));
   }
   return scalar;
@@ -48,7 +46,7 @@ bool is_field(std::string_view name) {
 void add_fields(ReportFrame& frame, const Scene& scene) {
   for (const auto& [name, array] : scene.particles)
     if (name != "position")
-      if (Column values = scalar_of(array); !values.empty())
+      if (FrameColumn values = scalar_of(array); !values.empty())
         frame.columns["particle." + name] = std::move(values);
 }
 
@@ -65,7 +63,7 @@ void add_walls(ReportFrame& frame, const Scene& scene) {
   for (std::size_t k = 0; k < 4; ++k) frame.columns[names[k]] = column_of(walls, k);
 }
 
-std::size_t grain_count(const Column& grain_of) {
+std::size_t grain_count(const FrameColumn& grain_of) {
   return grain_of.empty() ? 0
                           : 1 + static_cast<std::size_t>(*std::max_element(grain_of.begin(), grain_of.end()));
 }
@@ -76,11 +74,11 @@ void add_outlines(ReportFrame& frame, const Scene& scene) {
   if (grain == scene.outlines.end()) return;
   add_positions(frame, scene.outlines, "outline");
   auto& columns = frame.columns;
-  const Column& owner = columns["outline.grain"] = column_of(grain->second);
-  Column &x = columns["outline.x"], &y = columns["outline.y"];
+  const FrameColumn& owner = columns["outline.grain"] = column_of(grain->second);
+  FrameColumn &x = columns["outline.x"], &y = columns["outline.y"];
   const std::size_t grains = grain_count(owner);
-  Column &area = columns["grain.area"], &grain_x = columns["grain.x"], &grain_y = columns["grain.y"];
-  for (Column* column : {&area, &grain_x, &grain_y}) column->assign(grains, 0);
+  FrameColumn &area = columns["grain.area"], &grain_x = columns["grain.x"], &grain_y = columns["grain.y"];
+  for (FrameColumn* column : {&area, &grain_x, &grain_y}) column->assign(grains, 0);
   for (std::size_t begin = 0, end; begin < owner.size(); begin = end) {
     for (end = begin; end < owner.size() && owner[end] == owner[begin];) ++end;
     // A = 1/2 sum (x_i y_j - x_j y_i), A c = 1/6 sum (x_i + x_j)(x_i y_j - x_j y_i), j = i + 1, seen from
@@ -106,24 +104,24 @@ void add_outlines(ReportFrame& frame, const Scene& scene) {
 void add_grain_means(ReportFrame& frame) {
   auto& columns = frame.columns;
   if (!columns.contains("particle.grain") || !columns.contains("particle.radius")) return;
-  const Column &grain = columns["particle.grain"], &radius = columns["particle.radius"];
+  const FrameColumn &grain = columns["particle.grain"], &radius = columns["particle.radius"];
   const auto mean = [&](const std::string& name) {
     std::vector<double> sum(grain_count(grain), 0), weight = sum;
-    const Column& values = columns["particle." + name];
+    const FrameColumn& values = columns["particle." + name];
     for (std::size_t i = 0; i < std::min(values.size(), grain.size()); ++i) {
       const double a = double{radius[i]} * double{radius[i]};
       sum[static_cast<std::size_t>(grain[i])] += a * double{values[i]};
       weight[static_cast<std::size_t>(grain[i])] += a;
     }
     for (std::size_t g = 0; g < sum.size(); ++g) sum[g] /= std::max(weight[g], 1e-300);
-    return Column(sum.begin(), sum.end());
+    return FrameColumn(sum.begin(), sum.end());
   };
   for (const ReportField& field : fields_of(frame)) columns["grain." + field.name] = mean(field.name);
   for (const std::string axis : {"x", "y"}) {
     const std::string centre_name = "grain." + axis;
     if (!columns.contains(centre_name)) columns[centre_name] = mean(axis);
-    const Column& centre = columns[centre_name];
-    Column& position = columns["particle." + axis];
+    const FrameColumn& centre = columns[centre_name];
+    FrameColumn& position = columns["particle." + axis];
     for (std::size_t i = 0; i < position.size(); ++i)
       position[i] -= centre[static_cast<std::size_t>(grain[i])];
   }
@@ -133,7 +131,8 @@ void add_contacts(ReportFrame& frame, const Scene& scene) {
   std::vector<Chain> chains;
   const auto pair = scene.contacts.find("pair"), force = scene.contacts.find("force");
   if (pair != scene.contacts.end() && force != scene.contacts.end()) {
-    const Column a = column_of(pair->second, 0), b = column_of(pair->second, 1), f = column_of(force->second);
+    const FrameColumn a = column_of(pair->second, 0), b = column_of(pair->second, 1),
+                      f = column_of(force->second);
     frame.contacts_of_grains = scene.contacts.contains("position");
     const std::size_t movable = frame.columns[frame.contacts_of_grains ? "grain.x" : "particle.x"].size();
     const std::size_t walls = scene.wall_segments.size() / 4;
@@ -148,7 +147,7 @@ void add_contacts(ReportFrame& frame, const Scene& scene) {
   std::sort(chains.begin(), chains.end(),
             [](const Chain& c, const Chain& d) { return std::pair(c.a, c.b) < std::pair(d.a, d.b); });
   auto& columns = frame.columns;
-  Column &a = columns["contact.a"], &b = columns["contact.b"], &f = columns["contact.force"];
+  FrameColumn &a = columns["contact.a"], &b = columns["contact.b"], &f = columns["contact.force"];
   for (const Chain& chain : chains) {
     a.push_back(static_cast<float>(chain.a));
     b.push_back(static_cast<float>(chain.b));
@@ -191,10 +190,10 @@ ReportFrame frame_of(const Scene& scene) {
 bool can_merge(const ReportFrame& frame, std::size_t size) {
   const auto column = [&](const char* name) {
     const auto at = frame.columns.find(name);
-    return at == frame.columns.end() ? Column{} : at->second;
+    return at == frame.columns.end() ? FrameColumn{} : at->second;
   };
-  const Column grain = column("particle.grain"), x = column("particle.x"), y = column("particle.y");
-  const Column radius = column("particle.radius");
+  const FrameColumn grain = column("particle.grain"), x = column("particle.x"), y = column("particle.y");
+  const FrameColumn radius = column("particle.radius");
   const bool has_points = frame.contacts_of_grains && !grain.empty() && radius.size() == grain.size();
   if (!has_points || grain.size() % size != 0) return false;
   for (std::size_t i = 0; i < grain.size(); ++i) {
@@ -209,7 +208,7 @@ void merge_particles(ReportFrame& frame, std::size_t size) {
   if (size < 2) return;
   for (auto& [name, column] : frame.columns) {
     if (!name.starts_with("particle.")) continue;
-    Column merged;
+    FrameColumn merged;
     for (std::size_t i = 0; i < column.size(); i += size) {
       double sum = 0;
       for (std::size_t k = i; k < i + size; ++k) sum += double{column[k]};

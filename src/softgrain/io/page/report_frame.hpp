@@ -8,6 +8,9 @@
 
 namespace softgrain {
 
+/// One number of each particle, grain, vertex, wall or contact.
+using FrameColumn = std::vector<float>;
+
 /// One picture of the page: columns of numbers by name. Absent when the scene does not have them.
 ///   particle.x .y [m] (from the centre of its grain if there are grains), .radius [m], .grain, and each
 ///   field
@@ -19,7 +22,7 @@ struct ReportFrame {
   std::int64_t step = 0;
   double time = 0;                  ///< [s]
   bool contacts_of_grains = false;  ///< a, b count grains, then walls; else particles
-  std::map<std::string, std::vector<float>> columns;
+  std::map<std::string, FrameColumn> columns;
 };
 
 ReportFrame frame_of(const Scene& scene);

@@ -26,7 +26,6 @@ namespace {
 constexpr int page_compression = 6;
 
 using Json = nlohmann::ordered_json;
-using Column = std::vector<float>;
 
 std::string text_or_nothing(const fs::path& path) { return fs::exists(path) ? read_file(path) : ""; }
 
@@ -98,9 +97,9 @@ class Frames {
 
   /// Below 1 % of a strong force a line cannot be seen.
   void drop_weak_contacts(double limit) {
-    Column forces;
+    FrameColumn forces;
     for (const ReportFrame& frame : frames_) {
-      const Column& force = frame.columns.at("contact.force");
+      const FrameColumn& force = frame.columns.at("contact.force");
       forces.insert(forces.end(), force.begin(), force.end());
     }
     if (forces.empty()) return;
@@ -113,9 +112,9 @@ class Frames {
     if (static_cast<double>(forces.size()) > limit)
       least = std::max(least, largest(static_cast<std::size_t>(limit)));
     for (ReportFrame& frame : frames_) {
-      const Column force = frame.columns["contact.force"];
+      const FrameColumn force = frame.columns["contact.force"];
       for (const char* name : {"contact.a", "contact.b", "contact.force"}) {
-        Column &column = frame.columns[name], kept;
+        FrameColumn &column = frame.columns[name], kept;
         for (std::size_t c = 0; c < force.size(); ++c)
           if (force[c] >= least) kept.push_back(column[c]);
         column = std::move(kept);
@@ -130,7 +129,7 @@ class Frames {
 };
 
 /// Whole numbers from 0 that a float holds exactly.
-bool is_whole(const Column& values) {
+bool is_whole(const FrameColumn& values) {
   return std::all_of(values.begin(), values.end(),
                      [](float v) { return v >= 0 && v < 16777216.0F && v == std::floor(v); });
 }
@@ -141,7 +140,7 @@ bool is_geometry(std::string_view name) {
          name == "particle.radius";
 }
 
-double extent(const Column& values) {
+double extent(const FrameColumn& values) {
   if (values.empty()) return 0;
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   return double{*high} - double{*low};
@@ -160,7 +159,7 @@ constexpr std::size_t few = 1 << 18;  ///< numbers that cost little
 
 /// How far apart numbers may lie that the page need not tell apart, where there are many: outlines 1/8192 of
 /// the picture, particles 1/4096, their fields 1/32 of the range; the widths of lines 1/255.
-double resolution(const std::string& name, const Column& values, double picture) {
+double resolution(const std::string& name, const FrameColumn& values, double picture) {
   if (name == "contact.force") return extent(values) / 255;
   if (values.size() <= few) return 0;
   if (!is_geometry(name)) return extent(values) / 31;
@@ -168,8 +167,8 @@ double resolution(const std::string& name, const Column& values, double picture)
 }
 
 /// The middle 99 % keep their values, the rest takes the nearest of these: few levels must do.
-void clip_outliers(Column& values) {
-  Column sorted = values;
+void clip_outliers(FrameColumn& values) {
+  FrameColumn sorted = values;
   const auto quantile = [&](double share) {
     const auto place =
         sorted.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size() - 1));
@@ -182,7 +181,7 @@ void clip_outliers(Column& values) {
 
 /// One column in all frames, one after another.
 struct Gathered {
-  Column values;
+  FrameColumn values;
   std::size_t stride = 1;  ///< from a number to the one that it is coded against
   std::size_t frames = 1;  ///< 1 where it never changes
 };
@@ -190,11 +189,11 @@ struct Gathered {
 /// Nothing where frames lack the column or, for other than contacts, their sizes differ.
 Gathered gather(const std::vector<ReportFrame>& frames, const std::string& name) {
   const bool ragged = name.starts_with("contact.");
-  const Column& first = frames.front().columns.at(name);
+  const FrameColumn& first = frames.front().columns.at(name);
   // the radius of a material point hardly changes
   bool changes = ragged;
   const bool keep_first = name == "particle.radius" && frames.front().columns.contains("outline.x");
-  Column all;
+  FrameColumn all;
   for (const ReportFrame& frame : frames) {
     const auto column = frame.columns.find(name);
     if (column == frame.columns.end() || (!ragged && column->second.size() != first.size())) return {};
