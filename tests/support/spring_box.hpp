@@ -15,7 +15,7 @@ inline Box<2> square_box(double side = 20e-3) {
       {{{0, 0}, {0, 1}, {}}, {{0, side}, {0, -1}, {}}, {{0, 0}, {1, 0}, {}}, {{side, 0}, {-1, 0}, {}}});
 }
 
-/// A spring along each axis of a box, sigma_k = K_k eps_k; presses obey their equation, with the stress at the
+/// A spring along each axis of a box, sigma_k = K_k eps_k; presses obey their equation, with the force at the
 /// end of the step, by bisection.
 class SpringModel final : public FakeModel {
  public:
@@ -24,7 +24,7 @@ class SpringModel final : public FakeModel {
 
   std::array<double, 2> stiffness_;  ///< x, y [Pa]
   std::array<double, 2> loss{};      ///< of the stress, x, y [Pa]
-  PressBody body{.mass = 2, .damper = 4e4};
+  PressBody body{.mass = 5, .damper = 1e5};
   Energies energy{};
 
   PressBody press_body(const Box<2>&, int, double) const override { return body; }
@@ -34,7 +34,9 @@ class SpringModel final : public FakeModel {
     if (start_[0] == 0) start_ = {box.width(), box.height()};
     for (Press& press : box.presses) solve(press, box, dt);
     for (Wall<2>& wall : box.walls) wall.point += dt * wall.velocity;
-    for (std::size_t w = 0; w < box.walls.size(); ++w) box.impulse[w] = -impulse(box, w, dt) * box.walls[w].normal;
+    const std::array<double, 2> length{box.width(), box.height()};
+    for (std::size_t w = 0; w < box.walls.size(); ++w)
+      box.impulse[w] = -force(length, w <= top_wall ? 1 : 0) * dt * box.walls[w].normal;
     return {};
   }
   void visit(StateVisitor& visit) override {
@@ -43,31 +45,29 @@ class SpringModel final : public FakeModel {
   }
 
  private:
-  /// Outwards [N s/m].
-  double impulse(const Box<2>& box, std::size_t wall, double dt) const {
-    const std::size_t axis = wall <= top_wall ? 1 : 0;
-    const double length = box.length(static_cast<int>(axis)), across = box.volume() / length;
-    return dt * across * (stiffness_[axis] * std::log(start_[axis] / length) - loss[axis]);
+  /// On a wall across an axis, outwards [N/m].
+  double force(const std::array<double, 2>& length, std::size_t axis) const {
+    return length[1 - axis] * (stiffness_[axis] * std::log(start_[axis] / length[axis]) - loss[axis]);
+  }
+  /// sum_w share_w f_w of a press in a box whose walls have moved for dt.
+  double felt(const Press& press, const std::array<double, 2>& length) const {
+    return (press.share[2] + press.share[3]) * force(length, 0) + (press.share[0] + press.share[1]) * force(length, 1);
   }
   void solve(Press& press, Box<2>& box, double dt) const {
-    const auto move = [&](double v) {
-      Box<2> moved = box;
-      for (std::size_t w = 0; w < 4; ++w)
-        if (press.share[w] != 0) moved.walls[w].velocity = press.share[w] * v * moved.walls[w].normal;
-      return moved;
+    const auto after = [&](double v) {
+      const double x = press.share[2] + press.share[3], y = press.share[0] + press.share[1];
+      return std::array<double, 2>{box.width() - dt * x * v, box.height() - dt * y * v};
     };
     double low = -press.most, high = press.most;
-    for (int k = 0; k < 60; ++k) {
+    for (int k = 0; k < 50; ++k) {
       const double v = (low + high) / 2;
-      Box<2> moved = move(v);
-      for (Wall<2>& wall : moved.walls) wall.point += dt * wall.velocity;
-      double felt = 0;
-      for (std::size_t w = 0; w < 4; ++w) felt += press.share[w] * impulse(moved, w, dt);
-      (press.speed_under(felt, dt) > v ? low : high) = v;
+      const double free = press.free_speed(dt) - dt * felt(press, after(v)) * press.mobility(dt);
+      (free > v ? low : high) = v;
     }
     const double v = (low + high) / 2;
-    box.walls = move(v).walls;
-    press.speed = v;
+    for (std::size_t w = 0; w < 4; ++w)
+      if (press.share[w] != 0) box.walls[w].velocity = press.share[w] * v * box.walls[w].normal;
+    press.end_step(v, dt * felt(press, after(v)), dt);
   }
 
   std::array<double, 2> start_{};

@@ -39,6 +39,8 @@ double pressed_length(const std::array<double, 4>& share, const Box<2>& box) {
   return length;
 }
 
+std::size_t number_of(Part part) { return static_cast<std::size_t>(part); }
+
 std::int64_t steps_in(double time, double dt) { return std::llround(time / dt); }
 
 }  // namespace
@@ -123,7 +125,7 @@ Loading::Speeds Loading::speeds_of(const Stage& stage, const Box<2>& box, double
     if (drive.control == Control::velocity) speeds[d] = drive.value;
     if (drive.control == Control::rate) speeds[d] = drive.value * length(box, component);
     if (drive.control == Control::strain) speeds[d] = speed_to_strain(drive, box, time, dt);
-    if (drive.control == Control::stress) speeds[d] = press_speed_[static_cast<std::size_t>(drive.part)];
+    if (drive.control == Control::stress) speeds[d] = press_speed_[number_of(drive.part)];
     if (stage.towards && stage.until.strain[0]) {
       const double start = frame_.start[0] - length_at_stage_[0];
       speeds[d] = std::copysign(speeds[d], frame_.travel(0, *stage.until.strain[0]) - start);
@@ -178,25 +180,32 @@ Press Loading::press_of(const Drive& drive, const Box<2>& box, const Model& mode
   const auto share = share_of(drive.part, frame_.aspect);
   const double pressed = pressed_length(share, box);
   const PressBody body = model.press_body(box, axis_of(drive.part), dt);
-  return {.share = share,
+  const std::size_t part = number_of(drive.part);
+  return {.share = {share[0], share[1], share[2], share[3]},
           .force = target_of(drive, time + dt - stage_start_) * pressed,
           .mass = body.mass * pressed,
           .damper = body.damper * pressed,
           .most = drive.speed > 0 ? drive.speed : frame_.wall_velocity,
-          .speed = press_speed_[static_cast<std::size_t>(drive.part)]};
+          .speed = press_speed_[part],
+          .mean_force = press_force_[part],
+          .waiting = press_waiting_[part]};
 }
 
-void Loading::keep_speeds(const Box<2>& box) {
+void Loading::keep_presses(const Box<2>& box) {
   if (stage_ >= stages_.size()) return;
   std::size_t press = 0;
-  for (const Drive& drive : stage_now().drives)
-    if (drive.control == Control::stress && press < box.presses.size())
-      press_speed_[static_cast<std::size_t>(drive.part)] = box.presses[press++].speed;
+  for (const Drive& drive : stage_now().drives) {
+    if (drive.control != Control::stress || press >= box.presses.size()) continue;
+    const std::size_t part = number_of(drive.part);
+    press_speed_[part] = box.presses[press].speed;
+    press_force_[part] = box.presses[press].mean_force;
+    press_waiting_[part] = box.presses[press++].waiting;
+  }
 }
 
 void Loading::after_step(const Box<2>& box, double time, double dt, const StepFelt& felt) {
   number_of_last_ = number_;
-  keep_speeds(box);
+  keep_presses(box);
   if (box.closed()) watch(box, dt);
   if (finished()) return;
   judge_presses(box, time, dt);
@@ -316,11 +325,17 @@ void Loading::begin_stage(const Box<2>& box, double time) {
   stress_at_stage_ = stress_;
   for (int c = 0; c < 2; ++c) length_at_stage_[c] = length(box, c);
   held_ = {};
-  std::array<double, number_of_parts> speed{};
-  for (const Drive& drive : stage_now().drives)
-    if (drive.control == Control::stress)
-      speed[static_cast<std::size_t>(drive.part)] = press_speed_[static_cast<std::size_t>(drive.part)];
-  press_speed_ = speed;  // others begin at rest
+  const OfParts speed = press_speed_, force = press_force_, waiting = press_waiting_;
+  press_speed_ = press_force_ = press_waiting_ = {};
+  for (const Drive& drive : stage_now().drives) {
+    if (drive.control != Control::stress) continue;
+    const std::size_t part = number_of(drive.part);
+    const bool goes_on = force[part] != 0;  // others begin at rest, with what the grains bear
+    press_speed_[part] = speed[part];
+    press_waiting_[part] = waiting[part];
+    press_force_[part] =
+        goes_on ? force[part] : stress_[part] * pressed_length(share_of(drive.part, frame_.aspect), box);
+  }
 }
 
 void Loading::visit_start(StateVisitor& visit) {
@@ -368,10 +383,12 @@ void Loading::visit_stresses(StateVisitor& visit) {
   stresses("stress_mean_of_mean", "the same mean of that mean", stress_twice_);
   stresses("stress_largest", "so far", largest_);
   stresses("stress_at_stage", "that mean where the stage began", stress_at_stage_);
-  visit_numbers(visit,
-                {"press_speed", "m/s", Owner::run, Role::state,
-                 "of walls that keep a stress: yy, xx, bottom, top, left, right, all"},
-                press_speed_);
+  const auto press = [&](std::string_view name, std::string_view unit, std::string_view text, OfParts& values) {
+    visit_numbers(visit, {name, unit, Owner::run, Role::state, text}, values);
+  };
+  press("press_speed", "m/s", "of walls that keep a stress: yy, xx, bottom, top, left, right", press_speed_);
+  press("press_mean_force", "N/m", "the mean of what grains press them with", press_force_);
+  press("press_waiting", "s", "for how long that has been too small, or too large", press_waiting_);
 }
 
 void Loading::visit_held(StateVisitor& visit) {

