@@ -51,7 +51,8 @@ class SpringModel final : public FakeModel {
   }
   /// sum_w share_w f_w of a press in a box whose walls have moved for dt.
   double felt(const Press& press, const std::array<double, 2>& length) const {
-    return (press.share[2] + press.share[3]) * force(length, 0) + (press.share[0] + press.share[1]) * force(length, 1);
+    return (press.share[2] + press.share[3]) * force(length, 0) +
+           (press.share[0] + press.share[1]) * force(length, 1);
   }
   void solve(Press& press, Box<2>& box, double dt) const {
     const auto after = [&](double v) {
@@ -100,7 +101,8 @@ struct SpringRun {
   /// Of the pair along an axis, in the last step [Pa].
   double stress(int axis) const {
     const std::size_t wall = axis == 1 ? 0 : 2;
-    return (box.outward_impulse(wall) + box.outward_impulse(wall + 1)) / (2 * dt * box.volume() / box.length(axis));
+    return (box.outward_impulse(wall) + box.outward_impulse(wall + 1)) /
+           (2 * dt * box.volume() / box.length(axis));
   }
 };
 

@@ -93,9 +93,9 @@ struct Case {
     std::vector<double> unload_at{};  ///< strains at which the wall turns back
     double unload_by = 0.015;         ///< strain given back before loading again
     double hold = 0;                  ///< rest of the wall at each turn and at the end [s]
-    double hold_stress = 0;       ///< sigma that walls keep for `hold` before the end [Pa]; 0: none
-    double confining_stress = 0;  ///< of the side walls of a biaxial path [Pa]
-    double rest = 0;              ///< kinetic over stored energy that ends the rest of a relaxation; 0: none
+    double hold_stress = 0;           ///< sigma that walls keep for `hold` before the end [Pa]; 0: none
+    double confining_stress = 0;      ///< of the side walls of a biaxial path [Pa]
+    double rest = 0;  ///< kinetic over stored energy that ends the rest of a relaxation; 0: none
   } loading;
 
   std::vector<Stage> stages{};  ///< of one's own, instead of those of a short form

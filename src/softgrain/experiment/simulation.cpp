@@ -64,9 +64,8 @@ std::string Simulation::early_end() const {
 
 LoadingOutcome Simulation::outcome() const {
   if (loading_.ended() != Loading::End::exhausted) return loading_.outcome();
-  return {
-      .completed = false,
-      .shortfall = fmt::format("the path ends at a strain of {:.4g}, {}: {}", strain(), loading_.where(),
+  return {.completed = false,
+          .shortfall = fmt::format("the path ends at a strain of {:.4g}, {}: {}", strain(), loading_.where(),
                                    early_end())};
 }
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "softgrain/loading/loading.hpp"
 #include "softgrain/geometry/box.hpp"
+#include "softgrain/loading/loading.hpp"
 #include "softgrain/model/model.hpp"
 #include "softgrain/observe/observation.hpp"
 

@@ -22,7 +22,8 @@ Stage rest(double time) { return {.name = "rest", .until = {.time = time}}; }
 std::vector<Exit> exits_of(const Case& c) {
   std::vector<Exit> exits;
   if (!is_in_a_box(c)) return exits;
-  if (c.loading.max_stress > 0) exits.push_back({.stress = c.loading.max_stress, .key = "loading.max_stress"});
+  if (c.loading.max_stress > 0)
+    exits.push_back({.stress = c.loading.max_stress, .key = "loading.max_stress"});
   if (c.loading.max_overlap > 0)
     exits.push_back({.overlap = c.loading.max_overlap, .key = "loading.max_overlap"});
   if (c.loading.hold_stress > 0)
@@ -55,7 +56,8 @@ std::vector<Stage> turning(const Case& c) {
              .until = {.time = loading.hold},
              .only_by_exit = true,
              .key = "loading.hold_stress"};
-  if (is_isotropic(c)) hold.drives = {keeps(Part::yy, loading.hold_stress), keeps(Part::xx, loading.hold_stress)};
+  if (is_isotropic(c))
+    hold.drives = {keeps(Part::yy, loading.hold_stress), keeps(Part::xx, loading.hold_stress)};
   stages.push_back(hold);
   return stages;
 }
@@ -87,10 +89,8 @@ std::vector<Stage> die(const Case& c) {
   Stage press{
       .name = "press", .drives = {at_velocity(Part::top, v)}, .key = key, .limit = c.loading.max_strain};
   press.until.stress[top] = stress;
-  const Stage hold{.name = "hold",
-                   .drives = {keeps(Part::top, stress)},
-                   .until = {.time = c.loading.hold},
-                   .key = key};
+  const Stage hold{
+      .name = "hold", .drives = {keeps(Part::top, stress)}, .until = {.time = c.loading.hold}, .key = key};
   Stage unload{.name = "unload", .drives = {at_velocity(Part::top, -v)}};
   unload.until.stress[top] = 0;
   if (c.loading.hold == 0) return {press, unload};
@@ -120,11 +120,16 @@ void check_turns(const Case::Loading& loading) {
 /// m/s of walls that a drive moves at their fastest.
 double speed_of(const Drive& drive, double length) {
   switch (drive.control) {
-    case Control::velocity: return std::abs(drive.value);
-    case Control::rate: return std::abs(drive.value) * length;
-    case Control::stress: return drive.speed;
-    case Control::strain: return 2 * std::numbers::pi * drive.amplitude / drive.period * length;
-    case Control::rest: break;
+    case Control::velocity:
+      return std::abs(drive.value);
+    case Control::rate:
+      return std::abs(drive.value) * length;
+    case Control::stress:
+      return drive.speed;
+    case Control::strain:
+      return 2 * std::numbers::pi * drive.amplitude / drive.period * length;
+    case Control::rest:
+      break;
   }
   return 0;
 }
@@ -167,10 +172,14 @@ void check_loading(const Case& c) {
 std::vector<Stage> stages_of(const Case& c) {
   if (!c.stages.empty()) return c.stages;
   switch (c.experiment.loading) {
-    case LoadingPath::biaxial: return biaxial(c);
-    case LoadingPath::die: return die(c);
-    case LoadingPath::relaxation: return relaxation(c);
-    default: return turning(c);
+    case LoadingPath::biaxial:
+      return biaxial(c);
+    case LoadingPath::die:
+      return die(c);
+    case LoadingPath::relaxation:
+      return relaxation(c);
+    default:
+      return turning(c);
   }
 }
 
@@ -178,8 +187,7 @@ double least_kept_stress(const Case& c) {
   double least = 0;
   for (const Stage& stage : stages_of(c))
     for (const Drive& drive : stage.drives)
-      if (drive.control == Control::stress)
-        least = least == 0 ? drive.value : std::min(least, drive.value);
+      if (drive.control == Control::stress) least = least == 0 ? drive.value : std::min(least, drive.value);
   return least;
 }
 
@@ -198,7 +206,8 @@ double fastest_speed(const Case& c, double height) {
   double fastest = 0;
   for (const Stage& stage : c.stages)
     for (const Drive& drive : stage.drives)
-      fastest = std::max(fastest, speed_of(drive, axis_of(drive.part) == 1 ? height : c.sample.aspect * height));
+      fastest =
+          std::max(fastest, speed_of(drive, axis_of(drive.part) == 1 ? height : c.sample.aspect * height));
   return fastest;
 }
 

@@ -18,8 +18,8 @@ std::vector<Stage> stages_of(const Case& the_case);
 LoadingFrame frame_of(const Case& the_case);
 
 /// The last strain of a case: loading.max_strain, or where undeformed grains fill
-/// loading.max_packing_fraction, Phi_0 = Phi_start e^(d eps), in a box that shrinks in d directions; of stages,
-/// the largest that they name.
+/// loading.max_packing_fraction, Phi_0 = Phi_start e^(d eps), in a box that shrinks in d directions; of
+/// stages, the largest that they name.
 double last_strain(const Case& the_case);
 
 /// Raises UsageError for a loading that cannot be followed, and for a stress that is held for no time.

@@ -5,8 +5,8 @@
 
 namespace softgrain {
 
-/// How well a stress is kept over the second half of a stage: its means over 200 equal times, and what becomes
-/// of them, all over the stress that is asked for.
+/// How well a stress is kept over the second half of a stage: its means over 200 equal times, and what
+/// becomes of them, all over the stress that is asked for.
 struct HeldStress {
   double mean() const { return windows > 0 ? sum / windows : 0; }
   double deviation() const;  ///< standard

@@ -330,11 +330,9 @@ void Loading::begin_stage(const Box<2>& box, double time) {
   for (const Drive& drive : stage_now().drives) {
     if (drive.control != Control::stress) continue;
     const std::size_t part = number_of(drive.part);
-    const bool goes_on = force[part] != 0;  // others begin at rest, with what the grains bear
-    press_speed_[part] = speed[part];
+    press_speed_[part] = speed[part];  // others begin at rest
     press_waiting_[part] = waiting[part];
-    press_force_[part] =
-        goes_on ? force[part] : stress_[part] * pressed_length(share_of(drive.part, frame_.aspect), box);
+    press_force_[part] = force[part];
   }
 }
 
@@ -369,8 +367,8 @@ void Loading::visit_stage(StateVisitor& visit) {
   number("stage_number", "", "how many stages came before it", number_);
   number("stage_number_of_last", "", "before that of the last step", number_of_last_);
   number("stage_saved", "s", "by which stages were shorter than planned", saved_);
-  number("loading_end", "", "0: none, 1: an end of the case, 2: a stage without its end, 3: the grains are exhausted",
-         ended_);
+  number("loading_end", "",
+         "0: none, 1: an end of the case, 2: a stage without its end, 3: the grains are exhausted", ended_);
   number("loading_exit", "", "which end of the case; -1: none", exit_);
   number("holds_stress", "", "1 from where loading.hold_stress was met on", kept_last_);
 }
@@ -383,7 +381,8 @@ void Loading::visit_stresses(StateVisitor& visit) {
   stresses("stress_mean_of_mean", "the same mean of that mean", stress_twice_);
   stresses("stress_largest", "so far", largest_);
   stresses("stress_at_stage", "that mean where the stage began", stress_at_stage_);
-  const auto press = [&](std::string_view name, std::string_view unit, std::string_view text, OfParts& values) {
+  const auto press = [&](std::string_view name, std::string_view unit, std::string_view text,
+                         OfParts& values) {
     visit_numbers(visit, {name, unit, Owner::run, Role::state, text}, values);
   };
   press("press_speed", "m/s", "of walls that keep a stress: yy, xx, bottom, top, left, right", press_speed_);
@@ -400,7 +399,9 @@ void Loading::visit_held(StateVisitor& visit) {
     for (std::size_t d = 0; d < held_.size(); ++d) held_[d].*member = values[d];
     unkept_.*member = values.back();
   };
-  declare("held_windows", "of each part that keeps a stress: equal times of the second half of its stage that are over; last: of the first that was not kept",
+  declare("held_windows",
+          "of each part that keeps a stress: equal times of the second half of its stage that are over; "
+          "last: of the first that was not kept",
           &HeldStress::windows);
   declare("held_sum", "of their mean stresses over the stress asked for", &HeldStress::sum);
   declare("held_squares", "of the squares of these", &HeldStress::squares);
@@ -417,9 +418,10 @@ void Loading::visit_held(StateVisitor& visit) {
 
 void Loading::visit(StateVisitor& visit) {
   visit_start(visit);
-  visit_numbers(visit,
-                {"travel_start", "m", Owner::run, Role::state, "of the walls where the first stage began: yy, xx"},
-                travel_start_);
+  visit_numbers(
+      visit,
+      {"travel_start", "m", Owner::run, Role::state, "of the walls where the first stage began: yy, xx"},
+      travel_start_);
   visit_stage(visit);
   visit_stresses(visit);
   visit_held(visit);

@@ -60,8 +60,8 @@ class Loading {
   /// Whether a stage waits for the grains to come to rest.
   bool asks_for_rest() const;
 
-  /// Gives the walls their velocities, and the box its presses, for the coming step. Raises UsageError where a
-  /// motion gives no number.
+  /// Gives the walls their velocities, and the box its presses, for the coming step. Raises UsageError where
+  /// a motion gives no number.
   void drive(Box<2>& box, const Model& model, double time, double dt);
   /// Takes the step that was just made, up to `time` [s].
   void after_step(const Box<2>& box, double time, double dt, const StepFelt& felt);
@@ -121,20 +121,21 @@ class Loading {
   WallMotion motion_;
   std::array<double, 2> travel_start_{};  // where the first stage began [m]
 
-  std::size_t stage_ = 0;                   // of the coming step
-  double stage_start_ = 0;                  // [s]
+  std::size_t stage_ = 0;                    // of the coming step
+  double stage_start_ = 0;                   // [s]
   std::array<double, 2> length_at_stage_{};  // of the box where it began [m]
   int number_ = 0, number_of_last_ = 0;
   double saved_ = 0;  // time that stages took less than planned [s]
   End ended_ = End::none;
-  int exit_ = -1;        // of the stage's exits, that ended the loading
-  bool kept_last_ = false;  // an exit led to the last stage
-  bool last_of_stage_ = false;     // of the coming step
+  int exit_ = -1;                    // of the stage's exits, that ended the loading
+  bool kept_last_ = false;           // an exit led to the last stage
+  bool last_of_stage_ = false;       // of the coming step
   std::array<double, 2> closing_{};  // speed at which walls come together, but for presses
 
-  OfParts stress_{}, stress_twice_{};  // mean of sigma over 0.1 % of strain at wall_velocity, and its mean [Pa]
-  OfParts largest_{};                  // so far [Pa]
-  OfParts stress_at_stage_{};          // the mean where the stage began [Pa]
+  OfParts stress_{},
+      stress_twice_{};         // mean of sigma over 0.1 % of strain at wall_velocity, and its mean [Pa]
+  OfParts largest_{};          // so far [Pa]
+  OfParts stress_at_stage_{};  // the mean where the stage began [Pa]
   OfParts press_speed_{}, press_force_{}, press_waiting_{};  // of Press [m/s], [N/m], [s]
 
   std::array<HeldStress, 4> held_{};  // by drive of the stage

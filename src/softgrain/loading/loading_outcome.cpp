@@ -7,7 +7,8 @@
 namespace softgrain {
 namespace {
 
-/// "stage 'press': stress_yy of 5e+06 Pa or packing_fraction 0.9", whatever ends a stage but times and strains.
+/// "stage 'press': stress_yy of 5e+06 Pa or packing_fraction 0.9", whatever ends a stage but times and
+/// strains.
 std::string asked_of(const Stage& stage, std::size_t number) {
   const Until& until = stage.until;
   std::string text;
@@ -104,9 +105,10 @@ LoadingOutcome Loading::outcome_of_exits() const {
 LoadingOutcome Loading::outcome_of_stresses() const {
   if (unkept_stage_ >= 0) {
     const Stage& stage = stages_[unkept_stage_];
-    const std::string what = stage.key.empty() ? fmt::format("{}: the stress of {}", stage.title(unkept_stage_),
-                                                             name_of(static_cast<Part>(unkept_part_)))
-                                               : std::string(stage.key);
+    const std::string what = stage.key.empty()
+                                 ? fmt::format("{}: the stress of {}", stage.title(unkept_stage_),
+                                               name_of(static_cast<Part>(unkept_part_)))
+                                 : std::string(stage.key);
     return {.completed = false,
             .shortfall = fmt::format("{} was not kept: over the second half of {} the stress was {}", what,
                                      stage.key.empty() ? "the stage" : "loading.hold", unkept_.text())};

@@ -37,9 +37,7 @@ class Planner {
 
  private:
   double length(int c) const { return frame_.start[c] - travel_[c]; }
-  std::array<double, 2> strains() const {
-    return {frame_.strain(0, length(0)), frame_.strain(1, length(1))};
-  }
+  std::array<double, 2> strains() const { return {frame_.strain(0, length(0)), frame_.strain(1, length(1))}; }
 
   void set_speeds(const Stage& stage) {
     speed_ = rate_ = {};

@@ -64,13 +64,20 @@ void repeat(std::vector<Stage>& all, std::size_t first, int times) {
 
 std::array<double, 4> share_of(Part part, double aspect) {
   switch (part) {
-    case Part::yy: return {0.5, 0.5, 0, 0};
-    case Part::xx: return {0, 0, 0.5, 0.5};
-    case Part::bottom: return {1, 0, 0, 0};
-    case Part::top: return {0, 1, 0, 0};
-    case Part::left: return {0, 0, 1, 0};
-    case Part::right: return {0, 0, 0, 1};
-    case Part::all: break;
+    case Part::yy:
+      return {0.5, 0.5, 0, 0};
+    case Part::xx:
+      return {0, 0, 0.5, 0.5};
+    case Part::bottom:
+      return {1, 0, 0, 0};
+    case Part::top:
+      return {0, 1, 0, 0};
+    case Part::left:
+      return {0, 0, 1, 0};
+    case Part::right:
+      return {0, 0, 0, 1};
+    case Part::all:
+      break;
   }
   return {0.5, 0.5, 0.5 * aspect, 0.5 * aspect};
 }

@@ -71,7 +71,7 @@ struct Until {
 struct Exit {
   double stress = 0, overlap = 0;  ///< from this vertical stress [Pa] or mean overlap on; 0: any
   std::string_view key;            ///< that asks for it: "loading.max_stress"
-  bool to_last = false;            ///< the last stage follows, while walls come together; else the loading ends
+  bool to_last = false;  ///< the last stage follows, while walls come together; else the loading ends
 };
 
 /// One part of a loading: what the walls do, and until what. A part that it does not name rests.

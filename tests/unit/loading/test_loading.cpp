@@ -73,11 +73,12 @@ TEST_CASE("all four walls come in at half the speed, and the top wall alone at t
   CHECK(velocities(LoadingPath::compaction) == std::vector<Vec<2>>{{}, {0, -v}, {}, {}});
 }
 
-TEST_CASE("each part moves its walls: a component both and keeps the centre, a wall itself, a rate with the box") {
-  SpringRun run = run_of({{.drives = {moves(Part::xx, 1), moves(Part::bottom, 0.5)}, .until = until_strain(0.1)},
-                          {.drives = {{.part = Part::yy, .control = Control::rate, .value = 100}},
-                           .until = until_strain(0.3)}},
-                         0);
+TEST_CASE(
+    "each part moves its walls: a component both and keeps the centre, a wall itself, a rate with the box") {
+  SpringRun run = run_of(
+      {{.drives = {moves(Part::xx, 1), moves(Part::bottom, 0.5)}, .until = until_strain(0.1)},
+       {.drives = {{.part = Part::yy, .control = Control::rate, .value = 100}}, .until = until_strain(0.3)}},
+      0);
   run.step();
   CHECK(run.box.walls[left_wall].velocity == Vec<2>{0.5, 0});
   CHECK(run.box.walls[right_wall].velocity == Vec<2>{-0.5, 0});
@@ -96,10 +97,11 @@ TEST_CASE("each part moves its walls: a component both and keeps the centre, a w
 TEST_CASE("stages end at their strain within 1e-9, be they of yy or xx, together or apart") {
   Until sideways;
   sideways.strain[1] = -0.02;
-  SpringRun run = run_of({{.drives = {moves(Part::yy, 1.7)}, .until = until_strain(0.11)},
-                          {.drives = {moves(Part::xx, -0.9)}, .until = sideways},
-                          {.drives = {moves(Part::top, -1.1), moves(Part::bottom, -0.3)}, .until = until_strain(0.04)}},
-                         0);
+  SpringRun run =
+      run_of({{.drives = {moves(Part::yy, 1.7)}, .until = until_strain(0.11)},
+              {.drives = {moves(Part::xx, -0.9)}, .until = sideways},
+              {.drives = {moves(Part::top, -1.1), moves(Part::bottom, -0.3)}, .until = until_strain(0.04)}},
+             0);
   run.finish_stage();
   CHECK(run.loading.strain(run.box) == doctest::Approx(0.11).epsilon(1e-9));
   run.finish_stage();
@@ -144,7 +146,8 @@ TEST_CASE("a strain swings by its amplitude about where the stage began, and com
 }
 
 TEST_CASE("presses keep the stress of a spring on both axes, each its own, and never exceed it by a tenth") {
-  SpringRun run = run_of({{.drives = {keeps(Part::yy, target), keeps(Part::xx, target / 2)}, .until = {.time = 6e-3}}});
+  SpringRun run =
+      run_of({{.drives = {keeps(Part::yy, target), keeps(Part::xx, target / 2)}, .until = {.time = 6e-3}}});
   run.model.loss = {0.1 * target, 0};
   double highest = 0;
   while (!run.loading.finished()) {
@@ -164,7 +167,8 @@ TEST_CASE("a press has the force, mass and damper of its walls, and goes no fast
   Drive top = keeps(Part::top, target);
   top.speed = 0.5;
   SpringRun run = run_of({{.drives = {top, keeps(Part::xx, target)}, .until = {.time = 1}}}, 0);
-  Box<2> wide({{{0, 0}, {0, 1}, {}}, {{0, 20e-3}, {0, -1}, {}}, {{0, 0}, {1, 0}, {}}, {{30e-3, 0}, {-1, 0}, {}}});
+  Box<2> wide(
+      {{{0, 0}, {0, 1}, {}}, {{0, 20e-3}, {0, -1}, {}}, {{0, 0}, {1, 0}, {}}, {{30e-3, 0}, {-1, 0}, {}}});
   run.loading.drive(wide, run.model, 0, dt);
   REQUIRE(wide.presses.size() == 2);
   CHECK(wide.presses[0].share == std::array<double, 6>{0, 1});
@@ -207,7 +211,8 @@ TEST_CASE("a hold begins where the stress is met, keeps it for its time, and say
       CHECK(run.loading.progress(run.time(), dt, planned) >= progress);
       progress = run.loading.progress(run.time(), dt, planned);
     }
-    CHECK(run.stress(1) == doctest::Approx(target).epsilon(5e-3));  // its mean over 0.1 % of strain lags by 1 %
+    CHECK(run.stress(1) ==
+          doctest::Approx(target).epsilon(5e-3));  // its mean over 0.1 % of strain lags by 1 %
     CHECK(run.loading.number() == 0);
     CHECK(run.loading.early_end().empty());
     const std::int64_t start = run.steps;
@@ -224,13 +229,13 @@ TEST_CASE("a hold begins where the stress is met, keeps it for its time, and say
 
 TEST_CASE("a stress that is not kept is told with its figures, and the loading is not complete") {
   for (const bool of_the_user : {false, true}) {
-    SpringRun run = of_the_user
-                        ? run_of({{.name = "hold", .drives = {keeps(Part::yy, target)}, .until = {.time = 2e-3}}})
-                        : run_of({.wall_velocity = v,
-                                  .max_strain = 0.3,
-                                  .unload_at = {},
-                                  .hold = 2e-3,
-                                  .hold_stress = target});
+    SpringRun run =
+        of_the_user ? run_of({{.name = "hold", .drives = {keeps(Part::yy, target)}, .until = {.time = 2e-3}}})
+                    : run_of({.wall_velocity = v,
+                              .max_strain = 0.3,
+                              .unload_at = {},
+                              .hold = 2e-3,
+                              .hold_stress = target});
     while (!of_the_user && !run.loading.at_turning_point()) run.step();
     run.model.body = {.mass = 1e9, .damper = 0};  // a wall that nothing moves
     for (std::int64_t step = 0; !run.loading.finished(); ++step) {
@@ -257,10 +262,11 @@ TEST_CASE("a stress that rises evenly ends the run where it is reached, not wher
 }
 
 TEST_CASE("a stage ends where its stress is reached, from below and from above, at 0 where nothing is left") {
-  SpringRun run = run_of({{.drives = {moves(Part::top, 0.5)}, .until = until_stress(Part::yy, target)},
-                          {.drives = {moves(Part::top, -0.5)}, .until = until_stress(Part::top, 0.4 * target)},
-                          {.drives = {moves(Part::xx, 0.5)}, .until = until_stress(Part::xx, 0.3 * target)},
-                          {.drives = {moves(Part::top, -0.5)}, .until = until_stress(Part::top, 0)}});
+  SpringRun run =
+      run_of({{.drives = {moves(Part::top, 0.5)}, .until = until_stress(Part::yy, target)},
+              {.drives = {moves(Part::top, -0.5)}, .until = until_stress(Part::top, 0.4 * target)},
+              {.drives = {moves(Part::xx, 0.5)}, .until = until_stress(Part::xx, 0.3 * target)},
+              {.drives = {moves(Part::top, -0.5)}, .until = until_stress(Part::top, 0)}});
   run.finish_stage();
   CHECK(run.stress(1) == doctest::Approx(target).epsilon(0.01));
   run.finish_stage();
@@ -302,13 +308,15 @@ TEST_CASE("a packing fraction, an overlap and a state of rest end a stage") {
   CHECK(run.loading.finished());
 }
 
-TEST_CASE("a stress that is never reached ends at a strain of 3, and apart where the run began, and is told") {
+TEST_CASE(
+    "a stress that is never reached ends at a strain of 3, and apart where the run began, and is told") {
   for (const bool together : {true, false}) {
     std::vector<Stage> stages{{.name = "press",
                                .drives = {moves(Part::yy, together ? 5 : -5)},
                                .until = until_stress(Part::yy, 5e6)},
                               {.until = {.time = 1}}};
-    if (!together) stages.insert(stages.begin(), {.drives = {moves(Part::yy, 5)}, .until = until_strain(0.2)});
+    if (!together)
+      stages.insert(stages.begin(), {.drives = {moves(Part::yy, 5)}, .until = until_strain(0.2)});
     SpringRun run = run_of(stages, 1e3);
     run.finish();
     CHECK(run.loading.strain(run.box) == doctest::Approx(together ? 3 : 0).epsilon(0.01));
@@ -364,8 +372,9 @@ TEST_CASE("a stress that is met while the walls go back is not held") {
 }
 
 TEST_CASE("a biaxial path confines, and compresses while the sides keep their stress") {
-  SpringRun run = run_of({.wall_velocity = v, .max_strain = 0.3, .unload_at = {}, .hold = 5e-3, .confining_stress = target},
-                         LoadingPath::biaxial);
+  SpringRun run = run_of(
+      {.wall_velocity = v, .max_strain = 0.3, .unload_at = {}, .hold = 5e-3, .confining_stress = target},
+      LoadingPath::biaxial);
   run.finish_stage();
   CHECK(run.stress(1) == doctest::Approx(target).epsilon(0.01));
   run.finish_stage();
@@ -379,8 +388,9 @@ TEST_CASE("a biaxial path confines, and compresses while the sides keep their st
 }
 
 TEST_CASE("a die presses with its top wall to a stress, keeps it, and lets go") {
-  SpringRun run = run_of({.wall_velocity = v, .max_strain = 0.3, .max_stress = target, .unload_at = {}, .hold = 5e-3},
-                         LoadingPath::die);
+  SpringRun run =
+      run_of({.wall_velocity = v, .max_strain = 0.3, .max_stress = target, .unload_at = {}, .hold = 5e-3},
+             LoadingPath::die);
   run.finish_stage();
   CHECK(run.stress(1) == doctest::Approx(target).epsilon(0.01));
   run.finish_stage();
@@ -390,8 +400,9 @@ TEST_CASE("a die presses with its top wall to a stress, keeps it, and lets go") 
   CHECK(std::abs(run.stress(1)) < 0.01 * target);
   CHECK(run.box.walls[bottom_wall].point == Vec<2>{0, 0});
   CHECK(run.loading.outcome().shortfall.empty());
-  SpringRun weak = run_of({.wall_velocity = v, .max_strain = 0.05, .max_stress = target, .unload_at = {}, .hold = 5e-3},
-                          LoadingPath::die);
+  SpringRun weak =
+      run_of({.wall_velocity = v, .max_strain = 0.05, .max_stress = target, .unload_at = {}, .hold = 5e-3},
+             LoadingPath::die);
   weak.finish();
   CHECK_FALSE(weak.loading.outcome().completed);
   CHECK(weak.loading.outcome().shortfall.find("was not reached by strain 0.05") != std::string::npos);
@@ -399,8 +410,9 @@ TEST_CASE("a die presses with its top wall to a stress, keeps it, and lets go") 
 
 TEST_CASE("a relaxation compacts, and rests until its time is over or the grains are at rest") {
   for (const bool at_rest : {false, true}) {
-    SpringRun run = run_of({.wall_velocity = v, .max_strain = 0.1, .unload_at = {}, .hold = 2e-3, .rest = 1e-4},
-                           LoadingPath::relaxation);
+    SpringRun run =
+        run_of({.wall_velocity = v, .max_strain = 0.1, .unload_at = {}, .hold = 2e-3, .rest = 1e-4},
+               LoadingPath::relaxation);
     run.felt.unrest = at_rest ? 1e-5 : 1e-3;
     run.finish_stage();
     CHECK(run.loading.strain(run.box) == doctest::Approx(0.1).epsilon(1e-9));
@@ -412,7 +424,8 @@ TEST_CASE("a relaxation compacts, and rests until its time is over or the grains
 }
 
 TEST_CASE("a stress that is held for no time is refused") {
-  CHECK_THROWS_AS(run_of({.wall_velocity = v, .max_strain = 0.2, .unload_at = {}, .hold_stress = 1e5}), UsageError);
+  CHECK_THROWS_AS(run_of({.wall_velocity = v, .max_strain = 0.2, .unload_at = {}, .hold_stress = 1e5}),
+                  UsageError);
 }
 
 TEST_CASE("a given motion takes the place of the stages, with the part that the first of them moves") {
@@ -442,7 +455,8 @@ TEST_CASE("a given motion without an end or without a speed is refused") {
   CHECK_THROWS_AS(run.step(), UsageError);
 }
 
-TEST_CASE("a loading goes on from a copy of its state in every kind of stage, and one of another case is refused") {
+TEST_CASE(
+    "a loading goes on from a copy of its state in every kind of stage, and one of another case is refused") {
   Drive swings{.part = Part::xx, .control = Control::strain, .amplitude = 0.01, .period = 1e-3};
   Drive pulses = keeps(Part::yy, target);
   pulses.amplitude = 0.1 * target;
@@ -490,7 +504,8 @@ TEST_CASE("a loading goes on from a copy of its state in every kind of stage, an
 }
 
 TEST_CASE("a loading that begins where another ended counts its strains from where that one began") {
-  SpringRun first = run_of({{.drives = {moves(Part::yy, 1), moves(Part::xx, 0.5)}, .until = until_strain(0.1)}}, 0);
+  SpringRun first =
+      run_of({{.drives = {moves(Part::yy, 1), moves(Part::xx, 0.5)}, .until = until_strain(0.1)}}, 0);
   first.finish();
   StateWriter writer;
   first.loading.visit(writer);

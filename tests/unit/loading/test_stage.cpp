@@ -68,7 +68,6 @@ TEST_CASE("the strain of a grain is -ln(1 - d/R) with d half the travel of the w
     CHECK(measure.strain(0, -measure.travel(strain)) == doctest::Approx(strain).epsilon(1e-13));
 }
 
-
 TEST_CASE("the top wall goes down, turns back at each strain asked for by the strain asked for, and stops") {
   const Case c =
       case_of(LoadingPath::diametral,
@@ -161,7 +160,8 @@ TEST_CASE("a loading that cannot be followed is refused with the key and the val
 TEST_CASE("a sine and a triangle begin at 0, reach 1 after a quarter and -1 after three") {
   for (const Wave wave : {Wave::sine, Wave::triangle}) {
     const double at[] = {0, 0.25, 0.5, 0.75, 1, 1.25}, value[] = {0, 1, 0, -1, 0, 1};
-    for (int k = 0; k < 6; ++k) CHECK(wave_at(wave, 3 * at[k], 3) == doctest::Approx(value[k]).epsilon(1e-12));
+    for (int k = 0; k < 6; ++k)
+      CHECK(wave_at(wave, 3 * at[k], 3) == doctest::Approx(value[k]).epsilon(1e-12));
   }
   CHECK(wave_at(Wave::triangle, 0.125, 1) == doctest::Approx(0.5));
   CHECK(wave_at(Wave::sine, 0.125, 1) == doctest::Approx(std::sqrt(0.5)));

@@ -180,7 +180,8 @@ class CaseReader {
   void take_speed_of_stages() {
     Case& c = draft_.the_case;
     if (c.stages.empty() || draft_.origins.contains("loading.wall_velocity")) return;
-    if (const double fastest = fastest_speed(c, box_height(c)); fastest > 0) c.loading.wall_velocity = fastest;
+    if (const double fastest = fastest_speed(c, box_height(c)); fastest > 0)
+      c.loading.wall_velocity = fastest;
   }
 
   void check_relations() {

@@ -119,7 +119,9 @@ const std::vector<TableOfKeys>& form_tables() {
        "A kind of grains, instead of [grain], [sample] and the material's keys of [mpm] or [bpm]. One "
        "today."},
       {"pair", "What acts between two kinds, or a kind and the walls, instead of [contact]."},
-      {"stage", "A part of the loading path of grains in a box, one after the other, instead of a short form of [loading]."},
+      {"stage",
+       "A part of the loading path of grains in a box, one after the other, instead of a short form of "
+       "[loading]."},
   };
   return tables;
 }

@@ -142,7 +142,8 @@ std::string stages_and_path_differ(const Case& c) {
     return path != LoadingPath::stages ? "" : "experiment.loading \"stages\" needs tables [[stage]]";
   if (path == LoadingPath::stages || path == LoadingPath::diametral) return "";
   return fmt::format(
-      "experiment.loading \"{}\" and [[stage]] both say what the walls do: write \"stages\", or leave one of them "
+      "experiment.loading \"{}\" and [[stage]] both say what the walls do: write \"stages\", or leave one of "
+      "them "
       "out",
       word_of(path));
 }
@@ -150,8 +151,8 @@ std::string stages_and_path_differ(const Case& c) {
 /// What a short form cannot do without.
 std::string path_incomplete(const Case& c) {
   const auto needs = [&](const char* key, const char* what) {
-    return fmt::format("experiment.loading \"{}\" needs loading.{} > 0: {}", word_of(c.experiment.loading), key,
-                       what);
+    return fmt::format("experiment.loading \"{}\" needs loading.{} > 0: {}", word_of(c.experiment.loading),
+                       key, what);
   };
   if (scope::biaxial.covers(c) && c.loading.confining_stress == 0)
     return needs("confining_stress", "the stress that the side walls keep");
@@ -219,7 +220,8 @@ const std::vector<Relation>& case_relations() {
       {{"loading.max_packing_fraction", "sample.packing_fraction"}, too_dense_from_the_start},
       {{"loading.hold_stress", "loading.hold", "experiment.loading"}, cannot_hold_a_stress},
       {{"experiment.loading"}, stages_and_path_differ},
-      {{"experiment.loading", "loading.confining_stress", "loading.max_stress", "loading.hold"}, path_incomplete},
+      {{"experiment.loading", "loading.confining_stress", "loading.max_stress", "loading.hold"},
+       path_incomplete},
   };
   return relations;
 }

@@ -144,8 +144,10 @@ constexpr std::string_view sample_files =
     "the file no more.\n";
 
 constexpr std::string_view stages =
-    "\nStages follow one another. Compression is positive, and strain counts from the start of the run. Of each\n"
-    "part a stage says one of `velocity`, `rate`, `stress`, `strain_amplitude` and `\"rest\"`. The first end that\n"
+    "\nStages follow one another. Compression is positive, and strain counts from the start of the run. Of "
+    "each\n"
+    "part a stage says one of `velocity`, `rate`, `stress`, `strain_amplitude` and `\"rest\"`. The first end "
+    "that\n"
     "holds ends it. [The guide of loading](../guide/loading.md) has examples.\n";
 
 }  // namespace

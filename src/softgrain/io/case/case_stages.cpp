@@ -23,8 +23,7 @@ struct Manner {
   Control control;
 };
 constexpr std::array manners{Manner{"velocity", Control::velocity}, Manner{"rate", Control::rate},
-                             Manner{"stress", Control::stress},
-                             Manner{"strain_amplitude", Control::strain}};
+                             Manner{"stress", Control::stress}, Manner{"strain_amplitude", Control::strain}};
 
 /// What is wrong with a stage, and where.
 struct StageFault {
@@ -67,9 +66,10 @@ std::optional<Drive> drive_of(const StageText& text, Part part) {
   const bool rests = !text.word(name).empty();
   if (rests) said.push_back("\"rest\"");
   if (said.size() > 1)
-    throw StageFault{place_of(text, name),
-                     fmt::format("{} takes one of velocity, rate, stress, strain_amplitude and \"rest\"; got {}",
-                                 name, fmt::join(said, " and "))};
+    throw StageFault{
+        place_of(text, name),
+        fmt::format("{} takes one of velocity, rate, stress, strain_amplitude and \"rest\"; got {}", name,
+                    fmt::join(said, " and "))};
   if (const auto amplitude = text.number(name + ".stress_amplitude")) drive.amplitude = *amplitude;
   drive.period = text.number(name + ".period").value_or(0);
   drive.speed = text.number(name + ".speed").value_or(0);
@@ -123,7 +123,8 @@ bool fits_one_grain(const Stage& stage) {
 }
 
 void check_stage(const Stage& stage, const StageText& text, const CaseDraft& draft) {
-  if (const std::string fault = fault_of(stage); !fault.empty()) throw StageFault{text.at, "[[stage]]: " + fault};
+  if (const std::string fault = fault_of(stage); !fault.empty())
+    throw StageFault{text.at, "[[stage]]: " + fault};
   if (draft.the_case.experiment.loading == LoadingPath::diametral && !fits_one_grain(stage))
     throw StageFault{text.at,
                      "[[stage]]: one grain between two walls (experiment.loading = \"diametral\") takes "
@@ -172,7 +173,8 @@ Json json_of(const Stage& stage) {
 std::string toml_of(const Json& json) {
   if (!json.is_object()) return json.dump();
   std::vector<std::string> entries;
-  for (const auto& [key, value] : json.items()) entries.push_back(fmt::format("{} = {}", key, toml_of(value)));
+  for (const auto& [key, value] : json.items())
+    entries.push_back(fmt::format("{} = {}", key, toml_of(value)));
   return fmt::format("{{ {} }}", fmt::join(entries, ", "));
 }
 

@@ -99,8 +99,9 @@ repeat_from = "press"
   REQUIRE(read.stages.size() == 3);
   const Stage &press = read.stages[0], &swing = read.stages[1], &last = read.stages[2];
   CHECK(press.name == "press");
-  CHECK(press.drives == std::vector<Drive>{{.part = Part::yy, .control = Control::velocity, .value = 1},
-                                           {.part = Part::xx, .control = Control::stress, .value = 2e5, .speed = 0.5}});
+  CHECK(press.drives ==
+        std::vector<Drive>{{.part = Part::yy, .control = Control::velocity, .value = 1},
+                           {.part = Part::xx, .control = Control::stress, .value = 2e5, .speed = 0.5}});
   CHECK(press.until.strain[0] == 0.4);
   CHECK(press.until.stress[static_cast<std::size_t>(Part::yy)] == 1e6);
   CHECK_FALSE(press.until.time);
@@ -111,8 +112,8 @@ repeat_from = "press"
                                             .period = 2e-3,
                                             .wave = Wave::triangle},
                                            {.part = Part::left}});
-  CHECK(last.drives == std::vector<Drive>{
-                           {.part = Part::xx, .control = Control::strain, .amplitude = 0.01, .period = 1e-3},
+  CHECK(last.drives ==
+        std::vector<Drive>{{.part = Part::xx, .control = Control::strain, .amplitude = 0.01, .period = 1e-3},
                            {.part = Part::bottom, .control = Control::rate, .value = -20}});
   CHECK(last.until.time == 5e-3);
   CHECK(last.until.strain[1] == 0.1);
@@ -126,7 +127,8 @@ repeat_from = "press"
 
 TEST_CASE("the resolved case keeps its stages, and reads back to itself") {
   const std::string text =
-      "[[stage]]\nname = 'pre\"ss'\nyy = { velocity = 0.1 }\nuntil = { stress_top = 12345.678, time = 1e-7 }\n"
+      "[[stage]]\nname = 'pre\"ss'\nyy = { velocity = 0.1 }\nuntil = { stress_top = 12345.678, time = 1e-7 "
+      "}\n"
       "[[stage]]\nxx = { stress = 3e5, stress_amplitude = 1e3, period = 1e-3, wave = 'triangle' }\n"
       "yy = { strain_amplitude = 0.1, period = 3 }\nleft = 'rest'\nuntil.time = 2\nrepeat = 4\n";
   const std::string refused = refusal(text);
@@ -148,7 +150,8 @@ TEST_CASE("the resolved case keeps its stages, and reads back to itself") {
 
 TEST_CASE("walls go as fast as the fastest stage says, unless loading.wall_velocity does") {
   const std::string stages =
-      "[[stage]]\nyy = { velocity = 1 }\nuntil.strain = 0.1\n[[stage]]\nxx = { velocity = -3 }\nuntil.time = 1\n";
+      "[[stage]]\nyy = { velocity = 1 }\nuntil.strain = 0.1\n[[stage]]\nxx = { velocity = -3 }\nuntil.time = "
+      "1\n";
   CHECK(parse_case(stages, "case.toml").loading.wall_velocity == 3);
   CHECK(parse_case(stages, "case.toml", {"loading.wall_velocity=2"}).loading.wall_velocity == 2);
   const std::string kept = "[[stage]]\nyy = { stress = 1e5 }\nuntil.time = 1\n";
@@ -163,15 +166,19 @@ TEST_CASE("stages that contradict themselves, or the path of the case, are refus
     CHECK(mentions(message, words));
   };
   const std::string until = "until = { time = 1 }\n", stage = "[[stage]]\n";
-  why(stage + "yy = { velocity = 1, stress = 1e6 }\n" + until, "2:22", "stage.yy takes one of velocity, rate, stress");
+  why(stage + "yy = { velocity = 1, stress = 1e6 }\n" + until, "2:22",
+      "stage.yy takes one of velocity, rate, stress");
   why(stage + "yy = { velocity = 1, rate = 1 }\n" + until, "2:22", "got velocity and rate");
-  why(stage + "yy = { velocity = 1 }\ntop = { stress = 1e6 }\n" + until, "1:1", "yy and top both move one wall");
+  why(stage + "yy = { velocity = 1 }\ntop = { stress = 1e6 }\n" + until, "1:1",
+      "yy and top both move one wall");
   why(stage + "yy = { velocity = 1 }\n", "1:1", "it never ends: give until");
   why(stage + "yy = { stress = 1 }\nuntil = { rest = 1e-3 }\n", "1:1", "give until.time too");
   why(stage + "yy = { strain_amplitude = 0.1 }\n" + until, "1:1", "so it needs a period");
-  why(stage + "yy = { velocity = 1, period = 1 }\n" + until, "2:22", "stage.yy.period needs strain_amplitude");
+  why(stage + "yy = { velocity = 1, period = 1 }\n" + until, "2:22",
+      "stage.yy.period needs strain_amplitude");
   why(stage + "yy = { velocity = 1, speed = 1 }\n" + until, "2:22", "stage.yy.speed needs stress");
-  why(stage + "yy = { stress = 1, stress_amplitude = 2, period = 1 }\n" + until, "1:1", "would pull the grains");
+  why(stage + "yy = { stress = 1, stress_amplitude = 2, period = 1 }\n" + until, "1:1",
+      "would pull the grains");
   why(stage + until + "repeat = 1.5\n", "3:1", "stage.repeat takes a whole number");
   why(stage + until + "repeat = 2\nrepeat_from = 'x'\n", "1:1", "no stage before has this name");
   why(stage + until + "repeat_from = 'x'\n", "1:1", "repeat_from needs repeat = 2 or more");
@@ -194,8 +201,8 @@ TEST_CASE("a short form says what it needs, and keys of other paths are without 
   CHECK(refusal(path("biaxial", "confining_stress = 1e5\n")).empty());
   CHECK(refusal(path("die", "max_stress = 1e5\n")).empty());
   CHECK(refusal(path("relaxation", "hold = 1e-3\nrest = 1e-4\n")).empty());
-  const CaseReading reading =
-      parse_case_with_notes(path("die", "max_stress = 1e5\nconfining_stress = 1e5\nunload_at = [0.1]\n"), "case.toml");
+  const CaseReading reading = parse_case_with_notes(
+      path("die", "max_stress = 1e5\nconfining_stress = 1e5\nunload_at = [0.1]\n"), "case.toml");
   CHECK(reading.without_effect == std::vector<std::string>{"loading.unload_at", "loading.confining_stress"});
   const CaseReading stages = parse_case_with_notes(
       "[loading]\nmax_strain = 0.2\n[[stage]]\nyy = { velocity = 1 }\nuntil.strain = 0.1\n", "case.toml");
