@@ -18,6 +18,9 @@ Drive keeps(Part part, double stress) { return {.part = part, .control = Control
 
 Stage rest(double time) { return {.name = "rest", .until = {.time = time}}; }
 
+/// Of top and bottom wall: side walls of a biaxial path, which make room for a box that flattens.
+constexpr double side_speed = 5;
+
 /// What a short form leaves its path for.
 std::vector<Exit> exits_of(const Case& c) {
   std::vector<Exit> exits;
@@ -76,6 +79,7 @@ std::vector<Stage> biaxial(const Case& c) {
   Stage compress{.name = "compress",
                  .drives = {at_velocity(Part::yy, v), keeps(Part::xx, confining)},
                  .key = "loading.confining_stress"};
+  compress.drives.back().speed = side_speed * v;
   compress.until.strain[0] = c.loading.max_strain;
   if (c.loading.max_stress > 0)
     compress.exits = {{.stress = c.loading.max_stress, .key = "loading.max_stress"}};

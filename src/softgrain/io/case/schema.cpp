@@ -56,10 +56,8 @@ Member member_of(Place place) {
 std::vector<Key> all_keys() {
   return {
       KEY(experiment.loading, "", its_words(),
-          "the loading path; diametral: one grain between two walls, the top one moves; the others have grains in a box; "
-          "compaction: the top wall comes down; isotropic: all four walls come in; biaxial: the same to a stress, which the "
-          "side walls keep while top and bottom wall go on; die: the top wall presses, keeps the stress and leaves; "
-          "relaxation: compaction, then rest; stages: what the tables [[stage]] say, as where nothing is said beside them"),
+          "the loading path (docs/guide/loading.md); diametral: one grain between two walls, the top one moves; the others: "
+          "grains in a box; stages: what the tables [[stage]] say, as where they stand alone"),
       KEY(experiment.model, "", its_words(),
           "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other; mpm: an "
           "elastic body by the material point method"),
