@@ -35,9 +35,9 @@ inline Simulation at_rest(std::unique_ptr<Model> model, int steps, double dt, in
   const Box<2> box({{.point = {0, 0}, .normal = {0, 1}, .velocity = {}},
                     {.point = {0, 1}, .normal = {0, -1}, .velocity = {}}});
   std::vector<Stage> stages;
-  if (turn > 0) stages.push_back({.duration = turn * dt});
-  stages.push_back({.duration = (steps - turn) * dt});
-  return {std::move(model), box, Loading(stages, {}, {}, 1), dt};
+  if (turn > 0) stages.push_back({.until = {.time = turn * dt}});
+  stages.push_back({.until = {.time = (steps - turn) * dt}});
+  return {std::move(model), box, Loading(stages, {}, box), dt};
 }
 
 /// A ball that bounces on a floor, with everything that makes resuming hard: a mean since the last row, in

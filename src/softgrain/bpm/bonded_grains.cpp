@@ -228,12 +228,6 @@ std::vector<GrainView> BondedGrains::grains() const {
   return views;
 }
 
-WallBody BondedGrains::wall_body(const Box<2>& box, double) const {
-  // mass of a sixteenth of a full box; waves of a material as stiff as its bonds, ten times sigma_I
-  const double wave_speed = std::sqrt(10 * sigma_I_ / density_), height = box.height();
-  return {.mass = density_ * height / 16, .damper = density_ * wave_speed, .patience = height / wave_speed};
-}
-
 /// Grains as stiff as their bonds, ten times sigma_I.
 PressBody BondedGrains::press_body(const Box<2>& box, int axis, double dt) const {
   return critically_damped(density_, std::sqrt(10 * sigma_I_ / density_), box.length(axis), dt);

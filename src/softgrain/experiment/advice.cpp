@@ -6,6 +6,7 @@
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/sample.hpp"
+#include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/material/any_law.hpp"
 
 namespace softgrain {
@@ -19,6 +20,7 @@ bool flows(const Case& c) { return c.experiment.model == GrainModel::mpm && law_
 double stress_of(const Case& c) {
   if (is_in_a_box(c) && c.loading.hold_stress > 0) return c.loading.hold_stress;
   if (is_in_a_box(c) && c.loading.max_stress > 0) return c.loading.max_stress;
+  if (const double named = largest_named_stress(c); is_in_a_box(c) && named > 0) return named;
   if (flows(c)) return c.mpm.material.yield_stress;
   if (c.experiment.model == GrainModel::mpm) return c.mpm.material.young_modulus;
   return !is_in_a_box(c) ? c.bpm.attraction / mean_distance(c) : c.bpm.cohesive_pressure;

@@ -4,6 +4,7 @@
 
 #include "softgrain/lattice/contact_on.hpp"
 #include "softgrain/lattice/shape_functions.hpp"
+#include "softgrain/loading/stage.hpp"
 #include "softgrain/material/material_law.hpp"
 #include "softgrain/math/precision.hpp"
 #include "softgrain/rigid/activation.hpp"
@@ -18,6 +19,10 @@ enum class LoadingPath {
   diametral,   ///< one grain between two walls, the top one moves
   compaction,  ///< grains in a box whose top wall comes down
   isotropic,   ///< grains in a box whose four walls come in
+  biaxial,     ///< isotropic to a stress, then top and bottom wall come in while the side walls keep it
+  die,         ///< the top wall presses grains in a box, keeps the stress, and leaves
+  relaxation,  ///< compaction, then rest
+  stages,      ///< grains in a box, along stages of one's own
 };
 enum class GrainModel { bpm, mpm };         ///< bonded rigid primaries, an elastic body
 enum class EqualPrimaries { count, size };  ///< what the grains of a packing share
@@ -88,8 +93,12 @@ struct Case {
     std::vector<double> unload_at{};  ///< strains at which the wall turns back
     double unload_by = 0.015;         ///< strain given back before loading again
     double hold = 0;                  ///< rest of the wall at each turn and at the end [s]
-    double hold_stress = 0;  ///< sigma that the top wall keeps for `hold` before the end [Pa]; 0: none
+    double hold_stress = 0;           ///< sigma that walls keep for `hold` before the end [Pa]; 0: none
+    double confining_stress = 0;      ///< of the side walls of a biaxial path [Pa]
+    double rest = 0;  ///< kinetic over stored energy that ends the rest of a relaxation; 0: none
   } loading;
+
+  std::vector<Stage> stages{};  ///< of one's own, instead of those of a short form
 
   struct Time {
     double step = 0;  ///< dt [s]; 0: the model's own (first_time_step)

@@ -5,6 +5,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
+#include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/lattice/lattice_grains.hpp"
 #include "softgrain/soft/elastic_grains.hpp"
 
@@ -40,11 +41,12 @@ Box<2> box_of_grain(const Case& c, const Topology& shape) {
 
 /// Of Newton's method, so that what it leaves of a stress that is kept is small.
 double tolerance_of(const Case& c, const SoftGrains& grains, double height) {
-  if (c.loading.hold_stress == 0) return c.mpm.tolerance;
+  const double kept = least_kept_stress(c);
+  if (kept == 0) return c.mpm.tolerance;
   constexpr double share = 0.01;  // of the stress
   const double wave = wave_speed(grains.law, grains.density);
   const double modulus = grains.density * wave * wave;
-  return std::min(c.mpm.tolerance, share * c.loading.hold_stress / modulus * height / grains.radius(0));
+  return std::min(c.mpm.tolerance, share * kept / modulus * height / grains.radius(0));
 }
 
 double cell_of(const Case& c) {

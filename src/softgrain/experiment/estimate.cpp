@@ -5,7 +5,7 @@
 
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/sample.hpp"
-#include "softgrain/experiment/stage.hpp"
+#include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/material/any_law.hpp"
 
 namespace softgrain {
@@ -38,15 +38,14 @@ double grain_area(const Case& c) {
 
 /// Of all stages [s].
 double loading_time(const Case& c) {
-  const StrainMeasure measure = strain_measure(c, box_height(c));
-  double time = 0, travel = 0;
-  for (const Stage& stage : stages_of(c)) {
-    time += stage.duration.value_or(0);
-    if (!stage.strain) continue;
-    const double to = measure.travel(*stage.strain);
-    time += std::abs((to - travel) / stage.speed);
-    travel = to;
+  LoadingFrame frame = frame_of(c);
+  const double height = box_height(c);
+  if (is_in_a_box(c)) {
+    frame.start = {height, c.sample.aspect * height};
+    frame.measure.length = height;
   }
+  double time = 0;
+  for (const PlannedStage& stage : plan(without_repeats(stages_of(c)), frame, {})) time += stage.time;
   return time;
 }
 
@@ -116,12 +115,17 @@ double seconds_of_rows(const Case& c, const Estimate& e) {
          (c.experiment.model == GrainModel::bpm ? 75e-6 : 17e-6);
 }
 
+/// Each ends with a snapshot.
+std::size_t stages_written(const Case& c) {
+  return c.stages.empty() ? 1 + 2 * c.loading.unload_at.size() : without_repeats(c.stages).size();
+}
+
 /// Snapshots and ParaView's files of a whole run [bytes], as measured by primary, by bonded grain (outlines)
 /// and by material point. A step writes one snapshot at most.
 double disk(const Case& c, const Estimate& e) {
   const bool bpm = c.experiment.model == GrainModel::bpm;
   const double frames =
-      std::min<double>(c.output.snapshots, e.steps) + 1 + 2 * static_cast<double>(c.loading.unload_at.size());
+      std::min<double>(c.output.snapshots, e.steps) + static_cast<double>(stages_written(c));
   const double bytes_of_particle = (bpm ? 280 : 150) + (c.output.vtk ? 75 : 0);
   return frames * (20e3 + bytes_of_particle * e.particles + (bpm ? 900 * grains(c) : 0));
 }

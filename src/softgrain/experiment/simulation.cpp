@@ -1,18 +1,12 @@
 #include "softgrain/experiment/simulation.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/experiment/speed_search.hpp"
 #include "softgrain/state/archive.hpp"
 
 namespace softgrain {
-namespace {
-
-/// Of a stress that is kept: so far from it the search for the speed of the walls ends.
-constexpr double stress_accuracy = 2e-3;
-
-}  // namespace
 
 Simulation::Simulation(std::unique_ptr<Model> model, Box<2> box, Loading loading, double dt)
     : model_(std::move(model)),
@@ -21,7 +15,6 @@ Simulation::Simulation(std::unique_ptr<Model> model, Box<2> box, Loading loading
       dt_(dt),
       steps_planned_(loading_.steps_planned(dt)) {
   row_.impulse.assign(box_.walls.size(), 0);
-  if (box_.closed()) loading_.body = model_->wall_body(box_, dt_);
 }
 
 Simulation::Simulation(const Simulation& other)
@@ -40,54 +33,23 @@ void Simulation::follow(WallMotion motion) {
 
 StepReport Simulation::step() {
   const bool over = finished();  // whoever goes on then has been told why
-  const double approach = loading_.approach_speed(box_, time(), dt_), limit = loading_.stress_limit();
-  const bool seeks = limit > 0 && loading_.body.mass == 0;
-  const StepReport report = seeks ? step_under(limit, approach) : step_at(approach);
+  loading_.drive(box_, *model_, time(), dt_);
+  const StepReport report = model_->step(box_, dt_);
   ++step_;
   for (std::size_t w = 0; w < box_.walls.size(); ++w) row_.impulse[w] += box_.outward_impulse(w);
   row_.duration += dt_;
-  const double stress = box_.closed() ? vertical_stress() : 0;
-  loading_.after_step(box_, time(), dt_, stress, report.overlap_mean);
+  loading_.after_step(box_, time(), dt_, felt_in(report));
   if (!over && model_->is_exhausted(report, box_)) loading_.end(Loading::End::exhausted);
   return report;
 }
 
-StepReport Simulation::step_at(double approach_speed) {
-  loading_.drive(box_, approach_speed);
-  return model_->step(box_, dt_);
-}
-
-/// Of the last step: the mean of the bottom and the top wall [Pa].
-double Simulation::vertical_stress() const {
-  return (box_.outward_impulse(bottom_wall) + box_.outward_impulse(top_wall)) / (2 * dt_ * box_.width());
-}
-
-/// A step of walls that bear at most sigma_h. Before they hold it, they go their way unless they would bear
-/// more; then, and from there on, they go at the speed v, sought by trial and error, at which
-///   sigma(v) + Z v = sigma_h,  |v| <= loading.wall_velocity.
-StepReport Simulation::step_under(double sigma_h, double approach_speed) {
-  const std::unique_ptr<Model> start = model_->copy();
-  const Box<2> box_start = box_;
-  const double damper = loading_.body.damper;
-  StepReport report;
-  const auto excess_at = [&](double v) {
-    report = step_at(v);
-    return vertical_stress() + damper * v - sigma_h;
-  };
-  SpeedSearch search(loading_.largest_speed(), stress_accuracy * sigma_h, loading_.slope);
-  double v = approach_speed;
-  double excess = excess_at(v);
-  if (!loading_.holds() && excess < damper * v) return report;  // sigma < sigma_h
-  while (!search.found(v, excess)) {
-    v = search.next();
-    model_ = start->copy();
-    box_ = box_start;
-    excess = excess_at(v);
-  }
-  if (!loading_.holds()) loading_.begin_hold(time() + dt_, v);
-  loading_.speed = v;
-  loading_.slope = search.slope();
-  return report;
+/// Energies take a look at every body: only where a stage asks for them.
+StepFelt Simulation::felt_in(const StepReport& report) const {
+  StepFelt felt{.overlap_mean = report.overlap_mean, .unrest = 0};
+  if (!loading_.asks_for_rest()) return felt;
+  const Energies energies = model_->energies();
+  felt.unrest = energies.kinetic / std::abs(energies.stored);
+  return felt;
 }
 
 SolvedContactProblem Simulation::step_and_catch_problem() {
@@ -102,10 +64,9 @@ std::string Simulation::early_end() const {
 
 LoadingOutcome Simulation::outcome() const {
   if (loading_.ended() != Loading::End::exhausted) return loading_.outcome();
-  return {
-      .completed = false,
-      .shortfall = fmt::format("the path ends at a strain of {:.4g}, before loading.max_strain {:.4g}: {}",
-                               strain(), loading_.last_strain(), early_end())};
+  return {.completed = false,
+          .shortfall = fmt::format("the path ends at a strain of {:.4g}, {}: {}", strain(), loading_.where(),
+                                   early_end())};
 }
 
 Observation Simulation::observe() const {
@@ -195,7 +156,6 @@ void Simulation::begin_from(const Checkpoint& checkpoint) {
   box_.visit(reader);
   model_->go_on(box_);
   loading_.begin_at(reader, box_);
-  if (box_.closed()) loading_.body = model_->wall_body(box_, dt_);
   steps_planned_ = loading_.steps_planned(dt_);
   begin_row();
 }

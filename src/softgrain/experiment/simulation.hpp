@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "softgrain/experiment/loading.hpp"
 #include "softgrain/geometry/box.hpp"
+#include "softgrain/loading/loading.hpp"
 #include "softgrain/model/model.hpp"
 #include "softgrain/observe/observation.hpp"
 
@@ -78,9 +78,7 @@ class Simulation final {
     std::vector<double> impulse;  // on each wall, outwards [N s/m]
     double duration = 0;          // [s]
   };
-  StepReport step_at(double approach_speed);
-  StepReport step_under(double stress, double approach_speed);
-  double vertical_stress() const;
+  StepFelt felt_in(const StepReport& report) const;
   PackingMeasures packing() const;
 
   std::unique_ptr<Model> model_;

@@ -55,16 +55,6 @@ struct Bodies {
   std::vector<Vec<2>> velocity;  ///< [m/s]
 };
 
-/// Walls that keep a stress sigma_h are bodies of mass m and damper Z: they come together at the speed v of
-///   m dv/dt = sigma_h + s - sigma - Z v/(1 + t/tau),  ds/dt = (sigma_h - sigma)/(10 tau),
-/// with |v| <= loading.wall_velocity and |s| <= sigma_h/5. While sigma is below sigma_h/2 t grows, and walls
-/// that touch nothing speed up; above, it falls within tau/4.
-struct WallBody {
-  double mass = 0;      ///< m, over the area of a wall [kg/m^2]; 0: v is sought where sigma + Z v = sigma_h
-  double damper = 0;    ///< Z, over the area of a wall [Pa s/m]
-  double patience = 1;  ///< tau [s]
-};
-
 /// Mass and damper of a press, over the area of its walls.
 struct PressBody {
   double mass = 0;    ///< [kg/m^2]
@@ -115,7 +105,6 @@ class Model {
   virtual std::pair<double, double> reach() const = 0;
   virtual std::vector<GrainView> grains() const = 0;
 
-  virtual WallBody wall_body(const Box<2>&, double) const { return {}; }
   /// Of a press along an axis, in steps of dt [s].
   virtual PressBody press_body(const Box<2>&, int /*axis*/, double /*dt*/) const { return {}; }
 

@@ -125,17 +125,6 @@ SoftView ElasticGrains<Dynamics>::view() const {
           .impulse_time = dynamics_.impulse_time};
 }
 
-/// The damper takes up the waves that come to a wall, Z = rho c; implicit walls are sought so far as backward
-/// Euler's steps, longer than a wave needs through the box, do not damp them anyway. The mass of explicit
-/// ones is that of an eighth of a full box: less, and the stress of a step shakes the wall.
-template <class Dynamics>
-WallBody ElasticGrains<Dynamics>::wall_body(const Box<2>& box, double dt) const {
-  const double c = wave_speed(dynamics_.grains.law, density()), rho = density(), height = box.height();
-  if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>)
-    return {.damper = rho * c * std::max(0.0, 1 - c * dt / height)};
-  return {.mass = rho * height / 8, .damper = rho * c, .patience = height / c};
-}
-
 template <class Dynamics>
 PressBody ElasticGrains<Dynamics>::press_body(const Box<2>& box, int axis, double dt) const {
   return critically_damped(density(), wave_speed(dynamics_.grains.law, density()), box.length(axis), dt);

@@ -36,7 +36,6 @@ class ElasticGrains final : public Model {
   Scene scene(const Box<2>&) const override { return soft_scene(view()); }
   std::pair<double, double> reach() const override;
   std::vector<GrainView> grains() const override { return grain_views(dynamics_.grains); }
-  WallBody wall_body(const Box<2>& box, double dt) const override;
   PressBody press_body(const Box<2>& box, int axis, double dt) const override;
   void catch_problem() override;
   SolvedContactProblem caught_problem(double dt) override;

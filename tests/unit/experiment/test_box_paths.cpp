@@ -58,8 +58,8 @@ double momentum_error(Simulation& simulation) {
   return error / largest;
 }
 
-/// Means over the second half of the hold: stress [Pa], weighted by time.
-double held_stress(Simulation& simulation, std::int64_t hold_steps) {
+/// Means over the second half of the hold: stress of the walls that keep it [Pa], weighted by time.
+double held_stress(Simulation& simulation, std::int64_t hold_steps, bool top_alone) {
   while (!simulation.at_turning_point() && !simulation.finished()) simulation.step();
   REQUIRE_FALSE(simulation.finished());
   for (std::int64_t step = 0; step < hold_steps / 2; ++step) simulation.step();
@@ -68,7 +68,8 @@ double held_stress(Simulation& simulation, std::int64_t hold_steps) {
   CHECK(simulation.early_end().starts_with("loading.hold_stress was"));
   CHECK(simulation.progress() == 1);
   const auto row = test::next_row(simulation);
-  return (test::value_of(row, "stress_top") + test::value_of(row, "stress_bottom")) / 2;
+  const double top = test::value_of(row, "stress_top");
+  return top_alone ? top : (top + test::value_of(row, "stress_bottom")) / 2;
 }
 
 void check_same_bits(const Checkpoint& a, const Checkpoint& b) {
@@ -121,12 +122,13 @@ TEST_CASE("walls keep the stress of a packing that they are asked to keep") {
     c.time.step = 5e-6;
     c.loading.hold = 1.5e-3;
     c.loading.hold_stress = 4e5;
-    CHECK(held_stress(*create_simulation(c), 300) == doctest::Approx(4e5).epsilon(0.01));
+    const bool top_alone = loading == LoadingPath::compaction;
+    CHECK(held_stress(*create_simulation(c), 300, top_alone) == doctest::Approx(4e5).epsilon(0.01));
   }
   Case c = bonded_packing(LoadingPath::compaction);
   c.loading.hold = 4e-3;
   c.loading.hold_stress = 2e5;
-  CHECK(held_stress(*create_simulation(c), 10000) == doctest::Approx(2e5).epsilon(0.02));
+  CHECK(held_stress(*create_simulation(c), 10000, true) == doctest::Approx(2e5).epsilon(0.02));
 }
 
 TEST_CASE("a held stress is kept, in grains soft and stiff, and never far exceeded") {
@@ -135,7 +137,7 @@ TEST_CASE("a held stress is kept, in grains soft and stiff, and never far exceed
     Case c = soft_packing(LoadingPath::compaction);
     c.mpm.material.young_modulus = young_modulus;
     c.loading.wall_velocity = 0.5;
-    c.loading.hold = 12e-3;
+    c.loading.hold = young_modulus > 1e8 ? 60e-3 : 12e-3;  // stiff grains are hit long before they are packed
     c.loading.hold_stress = 1e4;
     const auto simulation = create_simulation(c);
     while (!simulation->finished()) simulation->step();

@@ -6,7 +6,9 @@
 #include <cctype>
 #include <optional>
 
+#include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/sample.hpp"
+#include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/io/case/case_relations.hpp"
 #include "softgrain/io/case/case_value.hpp"
 #include "softgrain/io/case/form_reader.hpp"
@@ -34,6 +36,7 @@ class CaseReader {
       given_ = draft_.the_case;
       const PlacedLines lines = place_grains(forms_, draft_, sources_);
       draft_.the_case = complete_sample(draft_.the_case);
+      take_speed_of_stages();
       check_placement(draft_, lines);
       if (is_to_run) check_relations();
     } catch (const TooManyIssues&) {
@@ -171,6 +174,14 @@ class CaseReader {
     draft_.notes.push_back(fmt::format("note: mpm.time_step is an old name{}; write time.step = {}",
                                        counts ? "" : " and has no effect here",
                                        written_value(now, *find_key("time.step"))));
+  }
+
+  /// Walls go as fast as their stages say: the time step follows it, and averages of the stress.
+  void take_speed_of_stages() {
+    Case& c = draft_.the_case;
+    if (c.stages.empty() || draft_.origins.contains("loading.wall_velocity")) return;
+    if (const double fastest = fastest_speed(c, box_height(c)); fastest > 0)
+      c.loading.wall_velocity = fastest;
   }
 
   void check_relations() {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "softgrain/loading/stage.hpp"
+
 namespace softgrain {
 namespace {
 
@@ -22,7 +24,7 @@ FormKey number(std::string name, std::string_view unit, Range range, std::string
 }
 
 std::vector<FormKey> all_forms() {
-  const Range any, positive{.low = 0, .without_low = true}, not_negative{.low = 0};
+  const Range any, positive{.low = 0, .without_low = true};
   return {
       only("experiment.dimension", "2", "dimensions of space"),
 
@@ -59,25 +61,49 @@ std::vector<FormKey> all_forms() {
       {"sample.file", Takes::text, {}, "a CSV file with the places of the grains, instead of random ones: see below; from the folder of the case file"},
 
       {"stage.name", Takes::text, {}, "name of the stage"},
-      number("stage.yy.velocity", "m/s", any, "of top and bottom wall towards each other; below 0: apart"),
-      number("stage.yy.stress", "MPa", positive, "vertical stress that is kept, compression positive, for until.time"),
-      number("stage.xx.velocity", "m/s", any, "of the side walls towards each other"),
-      word("stage.yy", {"rest"}, {}, "top and bottom wall rest"),
-      word("stage.xx", {"rest"}, {}, "the side walls rest, as where nothing is said of them"),
-      number("stage.until.strain", "", not_negative, "compressive strain from the start of the run, as the column strain has it"),
-      number("stage.until.stress_yy", "MPa", positive, "vertical stress, compression positive"),
+      number("stage.repeat", "", {.low = 1}, "how often the stages from repeat_from to this one are done, this time included"),
+      {"stage.repeat_from", Takes::text, {}, "name of the stage from which on is repeated; left out: this one alone"},
+      number("stage.until.time", "ms", positive, "time since the stage began"),
+      number("stage.until.strain", "", any, "compressive strain of yy since the start of the run, as the column strain has it"),
+      number("stage.until.strain_xx", "", any, "the same of xx, ln(w_start/w)"),
       number("stage.until.packing_fraction", "", positive, "packing fraction Phi_0 of the undeformed grains"),
-      number("stage.until.overlap", "", positive, "mean overlap of primaries over their radius (bpm)"),
-      number("stage.until.time", "ms", positive, "time since the stage began, of a rest or a stress that is kept"),
+      number("stage.until.overlap", "", positive, "mean overlap of the contacts, as the column overlap_mean has it"),
+      number("stage.until.rest", "", positive, "kinetic over stored energy, below which the grains are at rest"),
   };
 }
+
+/// What walls of a part do, and the stress on them that ends a stage.
+void add_forms_of(Part part, std::string_view walls, std::vector<FormKey>& all) {
+  const Range any, positive{.low = 0, .without_low = true}, not_negative{.low = 0};
+  const std::string name = fmt::format("stage.{}", name_of(part));
+  all.push_back(word(name, {"rest"}, {}, walls));
+  all.push_back(number(name + ".velocity", "m/s", any, "at which they come together, half by each of a pair; below 0: apart"));
+  all.push_back(number(name + ".rate", "1/s", any, "of the strain, compression positive"));
+  all.push_back(number(name + ".stress", "MPa", positive, "that they keep, compression positive, of a pair in the mean"));
+  all.push_back(number(name + ".speed", "m/s", positive, "of walls that keep a stress, at most; left out: loading.wall_velocity"));
+  all.push_back(number(name + ".stress_amplitude", "MPa", positive, "of the wave that is added to the stress"));
+  all.push_back(number(name + ".strain_amplitude", "", {.low = 0, .high = 1, .without_low = true}, "of the wave of the strain about that where the stage began"));
+  all.push_back(number(name + ".period", "ms", positive, "of the wave"));
+  all.push_back(word(name + ".wave", {"sine", "triangle"}, {}, "form of the wave; left out: sine"));
+  all.push_back(number(fmt::format("stage.until.stress_{}", name_of(part)), "MPa", not_negative, "mean over 0.1 % of strain, of a pair of both walls; 0: the walls are let go"));
+}
 // clang-format on
+
+void add_stages(std::vector<FormKey>& all) {
+  add_forms_of(Part::yy, "bottom and top wall; \"rest\" where nothing is said of them", all);
+  add_forms_of(Part::xx, "left and right wall, in the same way", all);
+  add_forms_of(Part::bottom, "the bottom wall alone", all);
+  add_forms_of(Part::top, "the top wall alone", all);
+  add_forms_of(Part::left, "the left wall alone", all);
+  add_forms_of(Part::right, "the right wall alone", all);
+}
 
 }  // namespace
 
 const std::vector<FormKey>& form_keys() {
   static const std::vector<FormKey> keys = [] {
     std::vector<FormKey> all = all_forms(), material;
+    add_stages(all);
     for (const MaterialParameter& p : material_parameters)
       material.push_back(
           stands_for(fmt::format("kind.law.{}", p.name), {fmt::format("mpm.{}", p.name)}, p.text));
@@ -93,7 +119,9 @@ const std::vector<TableOfKeys>& form_tables() {
        "A kind of grains, instead of [grain], [sample] and the material's keys of [mpm] or [bpm]. One "
        "today."},
       {"pair", "What acts between two kinds, or a kind and the walls, instead of [contact]."},
-      {"stage", "A part of the loading path, one after the other, instead of [loading]."},
+      {"stage",
+       "A part of the loading path of grains in a box, one after the other, instead of a short form of "
+       "[loading]."},
   };
   return tables;
 }

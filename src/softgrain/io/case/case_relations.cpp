@@ -124,17 +124,42 @@ std::string too_many_steps(const Case& c) {
 
 std::string too_dense_from_the_start(const Case& c) {
   const double last = c.loading.max_packing_fraction;
-  if (c.experiment.loading == LoadingPath::diametral || last == 0 || last > c.sample.packing_fraction)
-    return "";
+  if (!scope::to_a_fraction.covers(c) || last == 0 || last > c.sample.packing_fraction) return "";
   return fmt::format("loading.max_packing_fraction must be above sample.packing_fraction: {} is not above {}",
                      last, c.sample.packing_fraction);
 }
 
 std::string cannot_hold_a_stress(const Case& c) {
-  if (c.loading.hold_stress == 0) return "";
+  if (c.loading.hold_stress == 0 || !c.stages.empty()) return "";
   if (c.experiment.loading == LoadingPath::diametral)
     return "loading.hold_stress needs a box: experiment.loading \"compaction\" or \"isotropic\"";
   return c.loading.hold > 0 ? "" : "loading.hold_stress needs loading.hold > 0: for how long";
+}
+
+std::string stages_and_path_differ(const Case& c) {
+  const LoadingPath path = c.experiment.loading;
+  if (c.stages.empty())
+    return path != LoadingPath::stages ? "" : "experiment.loading \"stages\" needs tables [[stage]]";
+  if (path == LoadingPath::stages || path == LoadingPath::diametral) return "";
+  return fmt::format(
+      "experiment.loading \"{}\" and [[stage]] both say what the walls do: write \"stages\", or leave one of "
+      "them "
+      "out",
+      word_of(path));
+}
+
+/// What a short form cannot do without.
+std::string path_incomplete(const Case& c) {
+  const auto needs = [&](const char* key, const char* what) {
+    return fmt::format("experiment.loading \"{}\" needs loading.{} > 0: {}", word_of(c.experiment.loading),
+                       key, what);
+  };
+  if (scope::biaxial.covers(c) && c.loading.confining_stress == 0)
+    return needs("confining_stress", "the stress that the side walls keep");
+  if (scope::is_path(c, LoadingPath::die) && c.loading.max_stress == 0)
+    return needs("max_stress", "the stress to which the top wall presses");
+  if (scope::relaxing.covers(c) && c.loading.hold == 0) return needs("hold", "how long the walls rest");
+  return "";
 }
 
 /// What the law says of its parameters together.
@@ -194,6 +219,9 @@ const std::vector<Relation>& case_relations() {
       {{"mpm.formulation", "mpm.contact_on", "experiment.loading", "mpm.law"}, formulation_cannot},
       {{"loading.max_packing_fraction", "sample.packing_fraction"}, too_dense_from_the_start},
       {{"loading.hold_stress", "loading.hold", "experiment.loading"}, cannot_hold_a_stress},
+      {{"experiment.loading"}, stages_and_path_differ},
+      {{"experiment.loading", "loading.confining_stress", "loading.max_stress", "loading.hold"},
+       path_incomplete},
   };
   return relations;
 }

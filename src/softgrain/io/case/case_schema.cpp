@@ -144,18 +144,11 @@ constexpr std::string_view sample_files =
     "the file no more.\n";
 
 constexpr std::string_view stages =
-    "\n### What stages can say today\n\n"
-    "All that `[loading]` can: compression is positive, and strain counts from the start of the run. The "
-    "walls come\n"
-    "together (`yy = { velocity = \"0.5 m/s\" }`; with the same `xx` on all four sides), go apart by the "
-    "same strain\n"
-    "each time, and come together again. Each of these stages ends at `until = { strain = ... }`. The last "
-    "one may end\n"
-    "earlier, at a stress, packing fraction or overlap. Rests (`yy = \"rest\"`, `until = { time = ... }`) "
-    "follow each of\n"
-    "them or none, and all last the same. The last stage may keep a stress (`yy = { stress = ... }`) "
-    "instead.\n"
-    "Anything else is refused with \"not yet\".\n";
+    "\nStages follow one another. Compression is positive, and strain counts from the start of the run. Of "
+    "each\n"
+    "part a stage says one of `velocity`, `rate`, `stress`, `strain_amplitude` and `\"rest\"`. The first end "
+    "that\n"
+    "holds ends it. [The guide of loading](../guide/loading.md) has examples.\n";
 
 }  // namespace
 

@@ -1,137 +1,181 @@
 #include "softgrain/io/case/case_stages.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "softgrain/core/error.hpp"
 #include "softgrain/io/case/words.hpp"
+#include "softgrain/loading/stage.hpp"
 
 namespace softgrain {
 namespace {
 
-/// A stage no path of today has; what() says why.
-struct NotYet {
+using Json = nlohmann::ordered_json;
+
+constexpr std::array parts{Part::yy, Part::xx, Part::bottom, Part::top, Part::left, Part::right};
+
+/// What a part may do, in the words of a file.
+struct Manner {
+  const char* word;
+  Control control;
+};
+constexpr std::array manners{Manner{"velocity", Control::velocity}, Manner{"rate", Control::rate},
+                             Manner{"stress", Control::stress}, Manner{"strain_amplitude", Control::strain}};
+
+/// What is wrong with a stage, and where.
+struct StageFault {
   Origin at;
-  std::string why;
+  std::string what;
 };
 
-[[noreturn]] void not_yet_at(const StageText& stage, const std::string& why) { throw NotYet{stage.at, why}; }
-
-/// Walls together (1), apart (-1) or at rest (0), and how fast [m/s].
-struct Motion {
-  int direction;
-  double speed;
-  bool isotropic;
-};
-
-Motion motion_of(const StageText& stage) {
-  const auto vertical = stage.number("stage.yy.velocity"), sideways = stage.number("stage.xx.velocity");
-  if (stage.number("stage.yy.stress")) {
-    if (vertical || sideways) not_yet_at(stage, "a stage keeps a stress or moves at a velocity, not both");
-    return {0, 0, false};
-  }
-  if (stage.rests.contains("stage.yy") && !vertical && !sideways) return {0, 0, false};
-  if (!vertical) not_yet_at(stage, "a stage says what yy does: a velocity, a stress or \"rest\"");
-  if (sideways && *sideways != *vertical)
-    not_yet_at(stage, "the side walls come in as fast as top and bottom wall, or not at all");
-  if (*vertical == 0) not_yet_at(stage, "a velocity of 0 is yy = \"rest\"");
-  return {*vertical > 0 ? 1 : -1, std::abs(*vertical), sideways.has_value()};
+/// Where anything is said of a part first.
+Origin place_of(const StageText& text, const std::string& name) {
+  for (const auto& [key, value] : text.numbers)
+    if (key.starts_with(name + ".")) return value.second;
+  const auto word = text.words.find(name);
+  return word == text.words.end() ? text.at : word->second.second;
 }
 
-/// What stages say in the words of [loading].
-struct Path {
-  std::optional<Motion> moving;
-  std::vector<double> ends;  // strains: of the first turn, where the wall comes back, of the second turn, ...
-  std::optional<double> hold, hold_stress;
-  int rests = 0;
-
-  void add(const StageText& stage, bool last);
-  void add_rest(const StageText& stage, bool last);
-};
-
-void Path::add_rest(const StageText& stage, bool last) {
-  const auto time = stage.number("stage.until.time"), stress = stage.number("stage.yy.stress");
-  if (!time) not_yet_at(stage, "a rest or a stress that is kept needs until = { time = ... }");
-  if (ends.empty()) not_yet_at(stage, "the first stage moves the walls");
-  if (hold && *hold != *time) not_yet_at(stage, "all rests last the same time");
-  if (stress && !last) not_yet_at(stage, "a stress is kept in the last stage only");
-  hold = time;
-  hold_stress = stress;
-  ++rests;
+/// What needs something else beside it.
+void check_company(const StageText& text, const std::string& name, const Drive& drive) {
+  const auto fault = [&](const char* key, const char* needed) {
+    throw StageFault{place_of(text, name), fmt::format("{}.{} needs {}", name, key, needed)};
+  };
+  const bool keeps = drive.control == Control::stress, swings = drive.amplitude > 0;
+  if (text.number(name + ".speed") && !keeps) fault("speed", "stress: the one that the walls keep");
+  if (text.number(name + ".stress_amplitude") && !keeps)
+    fault("stress_amplitude", "stress: the one about which it swings");
+  if (text.number(name + ".period") && !swings) fault("period", "strain_amplitude, or stress_amplitude");
+  if (!text.word(name + ".wave").empty() && !swings) fault("wave", "strain_amplitude, or stress_amplitude");
 }
 
-void Path::add(const StageText& stage, bool last) {
-  const Motion motion = motion_of(stage);
-  if (motion.direction == 0) return add_rest(stage, last);
-  if (moving && (moving->speed != motion.speed || moving->isotropic != motion.isotropic))
-    not_yet_at(stage, "all stages move the same walls at the same speed");
-  if (motion.direction != (ends.size() % 2 == 0 ? 1 : -1))
-    not_yet_at(stage, "walls come together, go apart, come together, ...");
-  const auto strain = stage.number("stage.until.strain");
-  if (!strain)
-    not_yet_at(stage,
-               "a stage that moves walls ends at until.strain; the last one may end earlier, at "
-               "until.stress_yy, until.packing_fraction or until.overlap");
-  ends.push_back(*strain);
-  moving = motion;
-}
-
-/// 0.1 - 0.08 = 0.02, as who wrote the strains means it.
-double as_decimals(double difference) { return std::stod(fmt::format("{:.12g}", difference)); }
-
-/// Strains at which the wall turns back, and how far it goes each time.
-void give_turns(const Path& path, const StageText& last, CaseDraft& draft) {
-  if (path.ends.size() % 2 == 0) not_yet_at(last, "the last way is one together");
-  std::vector<double> turns;
-  std::optional<double> back;
-  for (std::size_t k = 0; k + 1 < path.ends.size(); k += 2) {
-    const double way = as_decimals(path.ends[k] - path.ends[k + 1]);
-    if (back && std::abs(way - *back) > 1e-9 * std::abs(*back))
-      not_yet_at(last, "all ways apart have the same length in strain");
-    back = way;
-    turns.push_back(path.ends[k]);
-  }
-  const std::size_t stops = turns.size() * 2 + 1;
-  if (path.rests != 0 && static_cast<std::size_t>(path.rests) != stops)
-    not_yet_at(last, fmt::format("walls rest after every one of the {} ways, or after none", stops));
-  if (!back) return;
-  TomlValue::Array list(turns.size());
-  for (std::size_t k = 0; k < turns.size(); ++k) list[k].content = turns[k];
-  draft.give(*find_key("loading.unload_at"), "stage.until.strain of ways together", {list, {}}, last.at);
-  draft.give_number("loading.unload_by", *back, "way of the stages that go apart", last.at);
-}
-
-/// What ends the last way before its strain does.
-void give_ends(const std::vector<StageText>& stages, const Path& path, CaseDraft& draft) {
-  const std::pair<const char*, const char*> limits[] = {
-      {"stage.until.stress_yy", "loading.max_stress"},
-      {"stage.until.packing_fraction", "loading.max_packing_fraction"},
-      {"stage.until.overlap", "loading.max_overlap"}};
-  const StageText* last_way = nullptr;
-  for (const StageText& stage : stages)
-    if (motion_of(stage).direction != 0) last_way = &stage;
-  for (const StageText& stage : stages)
-    for (const auto& [name, key] : limits) {
-      const auto found = stage.numbers.find(name);
-      if (found == stage.numbers.end()) continue;
-      const auto& [limit, origin] = found->second;
-      if (&stage != last_way) throw NotYet{origin, fmt::format("only the last way ends at {}", name)};
-      const bool kept = path.hold_stress && std::string_view(key) == "loading.max_stress";
-      if (kept && limit != *path.hold_stress)
-        throw NotYet{origin, "the stress that is kept is the one at which the way before it ends"};
-      if (!kept) draft.give_number(key, limit, name, origin);
+/// Nothing where the stage says nothing of the part.
+std::optional<Drive> drive_of(const StageText& text, Part part) {
+  const std::string name = fmt::format("stage.{}", name_of(part));
+  std::vector<std::string> said;
+  Drive drive{.part = part};
+  for (const Manner& manner : manners)
+    if (const auto value = text.number(fmt::format("{}.{}", name, manner.word))) {
+      said.push_back(manner.word);
+      drive.control = manner.control;
+      (manner.control == Control::strain ? drive.amplitude : drive.value) = *value;
     }
+  const bool rests = !text.word(name).empty();
+  if (rests) said.push_back("\"rest\"");
+  if (said.size() > 1)
+    throw StageFault{
+        place_of(text, name),
+        fmt::format("{} takes one of velocity, rate, stress, strain_amplitude and \"rest\"; got {}", name,
+                    fmt::join(said, " and "))};
+  if (const auto amplitude = text.number(name + ".stress_amplitude")) drive.amplitude = *amplitude;
+  drive.period = text.number(name + ".period").value_or(0);
+  drive.speed = text.number(name + ".speed").value_or(0);
+  check_company(text, name, drive);
+  drive.wave = value_of<Wave>(text.word(name + ".wave")).value_or(Wave::sine);
+  return said.empty() ? std::nullopt : std::optional(drive);
 }
 
-void give_loading(const Motion& motion, const StageText& first, CaseDraft& draft) {
-  LoadingPath& loading = draft.the_case.experiment.loading;
-  const bool given = draft.origins.contains("experiment.loading");
-  if (motion.isotropic && given && loading != LoadingPath::isotropic)
-    throw NotYet{first.at, fmt::format("experiment.loading \"{}\" moves no side walls", word_of(loading))};
-  if (!motion.isotropic && loading == LoadingPath::isotropic)
-    throw NotYet{first.at, "experiment.loading \"isotropic\" moves the side walls too: say xx"};
-  if (motion.isotropic) loading = LoadingPath::isotropic;
-  draft.give_number("loading.wall_velocity", motion.speed, "stage.yy.velocity", first.at);
+std::string stress_word(std::size_t part) {
+  return fmt::format("stress_{}", name_of(static_cast<Part>(part)));
+}
+
+Until until_of(const StageText& text) {
+  const auto number = [&](const std::string& name) { return text.number("stage.until." + name); };
+  Until until{.time = number("time")};
+  until.strain = {number("strain"), number("strain_xx")};
+  for (std::size_t p = 0; p < parts_with_stress; ++p) until.stress[p] = number(stress_word(p));
+  until.packing_fraction = number("packing_fraction");
+  until.overlap = number("overlap");
+  until.rest = number("rest");
+  return until;
+}
+
+int repeat_of(const StageText& text) {
+  const auto repeat = text.number("stage.repeat");
+  if (!repeat) return 1;
+  if (*repeat != std::floor(*repeat) || *repeat > 1e5)
+    throw StageFault{text.numbers.at("stage.repeat").second,
+                     fmt::format("stage.repeat takes a whole number up to 100000, got {}", *repeat)};
+  return static_cast<int>(*repeat);
+}
+
+Stage stage_of(const StageText& text) {
+  Stage stage{.name = text.word("stage.name"), .until = until_of(text)};
+  for (const Part part : parts)
+    if (const auto drive = drive_of(text, part)) stage.drives.push_back(*drive);
+  stage.repeat = repeat_of(text);
+  stage.repeat_from = text.word("stage.repeat_from");
+  return stage;
+}
+
+/// Between two walls, one grain takes what needs no sides of a box.
+bool fits_one_grain(const Stage& stage) {
+  const Until& until = stage.until;
+  for (const Drive& drive : stage.drives)
+    if (axis_of(drive.part) == 0 || (drive.control != Control::velocity && drive.control != Control::rest))
+      return false;
+  for (const auto& stress : until.stress)
+    if (stress) return false;
+  return !until.strain[1] && !until.packing_fraction;
+}
+
+void check_stage(const Stage& stage, const StageText& text, const CaseDraft& draft) {
+  if (const std::string fault = fault_of(stage); !fault.empty())
+    throw StageFault{text.at, "[[stage]]: " + fault};
+  if (draft.the_case.experiment.loading == LoadingPath::diametral && !fits_one_grain(stage))
+    throw StageFault{text.at,
+                     "[[stage]]: one grain between two walls (experiment.loading = \"diametral\") takes "
+                     "velocity and \"rest\" of yy, top and bottom until a time, strain, overlap or rest; for "
+                     "all else write experiment.loading = \"stages\""};
+}
+
+Json json_of(const Drive& drive) {
+  if (drive.control == Control::rest) return "rest";
+  Json json = Json::object();
+  for (const Manner& manner : manners)
+    if (manner.control == drive.control)
+      json[manner.word] = drive.control == Control::strain ? drive.amplitude : drive.value;
+  if (drive.speed > 0) json["speed"] = drive.speed;
+  if (drive.control == Control::stress && drive.amplitude > 0) json["stress_amplitude"] = drive.amplitude;
+  if (drive.amplitude > 0) json.update({{"period", drive.period}, {"wave", word_of(drive.wave)}});
+  return json;
+}
+
+Json json_of(const Until& until) {
+  Json json = Json::object();
+  const auto add = [&](const std::string& name, const std::optional<double>& value) {
+    if (value) json[name] = *value;
+  };
+  add("time", until.time);
+  add("strain", until.strain[0]);
+  add("strain_xx", until.strain[1]);
+  for (std::size_t p = 0; p < parts_with_stress; ++p) add(stress_word(p), until.stress[p]);
+  add("packing_fraction", until.packing_fraction);
+  add("overlap", until.overlap);
+  add("rest", until.rest);
+  return json;
+}
+
+Json json_of(const Stage& stage) {
+  Json json = Json::object();
+  if (!stage.name.empty()) json["name"] = stage.name;
+  for (const Drive& drive : stage.drives) json[std::string(name_of(drive.part))] = json_of(drive);
+  json["until"] = json_of(stage.until);
+  if (stage.repeat != 1) json["repeat"] = stage.repeat;
+  if (!stage.repeat_from.empty()) json["repeat_from"] = stage.repeat_from;
+  return json;
+}
+
+/// A number or text as TOML writes it too, a table on one line.
+std::string toml_of(const Json& json) {
+  if (!json.is_object()) return json.dump();
+  std::vector<std::string> entries;
+  for (const auto& [key, value] : json.items())
+    entries.push_back(fmt::format("{} = {}", key, toml_of(value)));
+  return fmt::format("{{ {} }}", fmt::join(entries, ", "));
 }
 
 }  // namespace
@@ -141,20 +185,42 @@ std::optional<double> StageText::number(const std::string& name) const {
   return found == numbers.end() ? std::nullopt : std::optional(found->second.first);
 }
 
-void read_stages(const std::vector<StageText>& stages, CaseDraft& draft) {
-  try {
-    Path path;
-    for (const StageText& stage : stages) path.add(stage, &stage == &stages.back());
-    give_loading(*path.moving, stages.front(), draft);
-    give_turns(path, stages.back(), draft);
-    give_ends(stages, path, draft);
-    draft.give_number("loading.max_strain", path.ends.back(), "stage.until.strain", stages.back().at);
-    if (path.hold) draft.give_number("loading.hold", *path.hold, "stage.until.time", stages.back().at);
-    if (path.hold_stress)
-      draft.give_number("loading.hold_stress", *path.hold_stress, "stage.yy.stress", stages.back().at);
-  } catch (const NotYet& reason) {
-    draft.add(reason.at, fmt::format("not yet: this [[stage]]: {}", reason.why));
+std::string StageText::word(const std::string& name) const {
+  const auto found = words.find(name);
+  return found == words.end() ? "" : found->second.first;
+}
+
+void read_stages(const std::vector<StageText>& texts, CaseDraft& draft) {
+  Case& c = draft.the_case;
+  if (!draft.origins.contains("experiment.loading")) c.experiment.loading = LoadingPath::stages;
+  for (const StageText& text : texts) {
+    try {
+      c.stages.push_back(stage_of(text));
+      check_stage(c.stages.back(), text, draft);
+      without_repeats(c.stages);
+    } catch (const StageFault& fault) {
+      draft.add(fault.at, fault.what);
+    } catch (const UsageError& error) {
+      draft.add(text.at, fmt::format("[[stage]]: {}", error.what()));
+      return;
+    }
   }
+}
+
+std::string stages_text(const Case& the_case) {
+  std::string text;
+  for (const Stage& stage : the_case.stages) {
+    text += "\n[[stage]]\n";
+    const Json json = json_of(stage);
+    for (const auto& [key, value] : json.items()) text += fmt::format("{} = {}\n", key, toml_of(value));
+  }
+  return text;
+}
+
+std::string stages_json(const Case& the_case) {
+  Json list = Json::array();
+  for (const Stage& stage : the_case.stages) list.push_back(json_of(stage));
+  return list.dump();
 }
 
 }  // namespace softgrain

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "softgrain/io/case/case_stages.hpp"
 #include "softgrain/io/case/case_value.hpp"
 #include "softgrain/io/case/schema.hpp"
 
@@ -52,7 +53,7 @@ std::string resolved_case_text(const Case& the_case) {
                  text += fmt::format("{} = {}{}\n", key.short_name(), si_value(the_case, key),
                                      unit.empty() ? "" : "  # " + unit);
                });
-  return text;
+  return text + stages_text(the_case);
 }
 
 std::string case_json(const Case& the_case) {
@@ -60,6 +61,7 @@ std::string case_json(const Case& the_case) {
   for_each_key(
       [&](const TableOfKeys& table) { tables[table.name] = Json::object(); },
       [&](const Key& key) { tables[key.table()][key.short_name()] = Json::parse(si_value(the_case, key)); });
+  if (!the_case.stages.empty()) tables["stage"] = Json::parse(stages_json(the_case));
   return tables.dump(2);
 }
 
@@ -79,7 +81,7 @@ std::string commented_case_text(const Case& the_case, Keys keys, std::string_vie
         text += fmt::format("# {} ({})\n{} = {}\n", key.text, accepted(key), key.short_name(),
                             written_value(the_case, key));
       });
-  return text;
+  return text + stages_text(the_case);
 }
 
 const std::vector<CaseTemplate>& case_templates() {

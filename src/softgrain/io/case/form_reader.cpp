@@ -24,11 +24,7 @@ constexpr std::array later_keys{
     LaterKey{"box.die_friction", "a [[pair]] between a kind and \"wall\" holds for all walls"},
     LaterKey{"stage.zz", "space has two dimensions"},
     LaterKey{"stage.xy", "walls do not shear"},
-    LaterKey{"stage.xx.stress", "a stress is kept by yy; isotropic paths keep it on all walls"},
-    LaterKey{"stage.xx.rate", "walls move at a velocity"},
-    LaterKey{"stage.yy.rate", "walls move at a velocity"},
     LaterKey{"stage.set", "keys hold for the whole run"},
-    LaterKey{"stage.until.stress_xx", "stress_yy ends a stage"},
 };
 
 bool is_below(std::string_view name, std::string_view above) {
@@ -48,6 +44,11 @@ std::string unknown_key(const std::string& name) {
 
 std::string quoted(const std::vector<std::string>& words) {
   return fmt::format("\"{}\"", fmt::join(words, "\", \""));
+}
+
+std::string word_in(const TomlValue& value) {
+  const auto* text = std::get_if<std::string>(&value.content);
+  return text == nullptr ? "" : *text;
 }
 
 /// The texts of a list, or nothing.
@@ -155,8 +156,7 @@ void FormReader::read_kind(const TomlValue::Table& table) {
 }
 
 bool FormReader::check_word(const FormKey& form, const TomlValue& value, Origin origin) {
-  std::string word;
-  if (const auto* text = std::get_if<std::string>(&value.content)) word = *text;
+  std::string word = word_in(value);
   if (const auto* i = std::get_if<std::int64_t>(&value.content)) word = fmt::format("{}", *i);
   if (const auto* x = std::get_if<double>(&value.content)) word = fmt::format("{}", *x);
   const auto is_word = [&](const std::vector<std::string>& words) {
@@ -189,12 +189,16 @@ std::optional<double> FormReader::number(const FormKey& form, const TomlValue& v
 }
 
 StageText FormReader::read_stage(const TomlValue::Table& table, Origin at) {
-  StageText stage{.at = at, .numbers = {}, .rests = {}};
+  StageText stage{.at = at, .numbers = {}, .words = {}};
   for_each_entry("stage", table, -1, [&](const FormKey& form, const TomlValue& value, Origin origin) {
     if (form.takes == Takes::number) {
       if (const auto read = number(form, value, origin)) stage.numbers[form.name] = {*read, origin};
     } else if (form.takes == Takes::word) {
-      if (check_word(form, value, origin)) stage.rests.insert(form.name);
+      if (check_word(form, value, origin)) stage.words[form.name] = {word_in(value), origin};
+    } else if (const std::string text = word_in(value); !text.empty()) {
+      stage.words[form.name] = {text, origin};
+    } else {
+      draft_.add(origin, fmt::format("{} takes a text", form.name));
     }
   });
   return stage;

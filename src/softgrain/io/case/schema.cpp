@@ -56,8 +56,8 @@ Member member_of(Place place) {
 std::vector<Key> all_keys() {
   return {
       KEY(experiment.loading, "", its_words(),
-          "the loading path; diametral: one grain between two walls, the top one moves; compaction: grains in a box "
-          "whose top wall comes down; isotropic: the same, all four walls come in"),
+          "the loading path (docs/guide/loading.md); diametral: one grain between two walls, the top one moves; the others: "
+          "grains in a box; stages: what the tables [[stage]] say, as where they stand alone"),
       KEY(experiment.model, "", its_words(),
           "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other; mpm: an "
           "elastic body by the material point method"),
@@ -112,22 +112,26 @@ std::vector<Key> all_keys() {
       KEY(solver.precision, "", its_words(),
           "of impulses and velocities within the sweeps of a bpm step; double for tolerances below 1e-11", with_bpm),
 
-      KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top wall; isotropic: of opposite walls towards each other, half by each"),
+      KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top wall; isotropic, biaxial: of opposite walls towards each other, half by each; of walls that keep a stress: at most; stages: left out, the fastest of theirs"),
       KEY(loading.max_strain, "", between(0, 3),
-          "strain at the end: eps = -ln(1 - d/R), d half the travel of the wall; in a box: eps = ln(h_start/h)"),
+          "strain at the end: eps = -ln(1 - d/R), d half the travel of the wall; in a box: eps = ln(h_start/h); die: at "
+          "which max_stress must be reached", with_short_path),
       KEY(loading.max_packing_fraction, "", from_to(0, 2),
-          "packing fraction Phi_0 of the undeformed grains at the end, if max_strain comes later; 0: none (in a box)", in_a_box),
+          "packing fraction Phi_0 of the undeformed grains at the end, if max_strain comes later; 0: none (in a box)", to_a_fraction),
       KEY(loading.max_stress, "MPa", at_least(0),
-          "vertical stress at the end, mean of top and bottom over 0.1 % of strain; 0: none (in a box)", in_a_box),
+          "vertical stress at the end, mean of top and bottom over 0.1 % of strain; 0: none; die: of the top wall, which "
+          "then keeps it for loading.hold (in a box)", to_a_stress),
       KEY(loading.max_overlap, "", from_to(0, 0.05),
-          "mean overlap of primaries in contact, over their mean radius, at the end; 0: none (bpm in a box)", bpm_in_a_box),
+          "mean overlap of primaries in contact, over their mean radius, at the end; 0: none (bpm in a box)", bpm_to_an_overlap),
       KEY(loading.unload_at, "", positive(),
-          "ascending strains at which the wall turns back once; [] for none"),
+          "ascending strains at which the wall turns back once; [] for none", turning),
       KEY(loading.unload_by, "", positive(), "strain given back before loading again", with_unloading),
-      KEY(loading.hold, "us", at_least(0), "rest of the wall wherever it turns, and at the end"),
+      KEY(loading.hold, "us", at_least(0), "rest of the wall wherever it turns, and at the end; biaxial, die: for which the stress is kept before it goes on; relaxation: of the rest", with_short_path),
       KEY(loading.hold_stress, "MPa", at_least(0),
-          "vertical stress at which the walls leave their path: they keep it for loading.hold, which ends the run; 0: none "
-          "(in a box)", in_a_box),
+          "vertical stress at which the walls leave their path: those that move keep it for loading.hold, which ends the run; "
+          "isotropic: xx and yy each; 0: none (in a box)", packing_turning),
+      KEY(loading.confining_stress, "MPa", at_least(0), "that the side walls keep (biaxial)", biaxial),
+      KEY(loading.rest, "", at_least(0), "kinetic over stored energy, below which the rest ends before loading.hold is over; 0: none (relaxation)", relaxing),
 
       KEY(time.step, "us", at_least(0),
           "time step dt; auto: bpm: a 43rd of the period of the bonds between the smallest primaries; implicit mpm: the "

@@ -52,8 +52,32 @@ inline constexpr Scope lognormal{"with sample.sizes lognormal",
                                  [](const Case& c) { return has_sizes(c, SizeLaw::lognormal); }};
 inline constexpr Scope listed{"with sample.sizes list",
                               [](const Case& c) { return has_sizes(c, SizeLaw::list); }};
+inline bool is_path(const Case& c, LoadingPath path) {
+  return c.experiment.loading == path && c.stages.empty();
+}
+/// Of the paths that go to a strain and may turn.
+inline bool turns(const Case& c) {
+  return is_path(c, LoadingPath::diametral) || is_path(c, LoadingPath::compaction) ||
+         is_path(c, LoadingPath::isotropic);
+}
+inline constexpr Scope with_short_path{"on paths that are not stages",
+                                       [](const Case& c) { return c.stages.empty(); }};
+inline constexpr Scope turning{"on diametral, compaction and isotropic paths", turns};
+inline constexpr Scope packing_turning{"on compaction and isotropic paths",
+                                       [](const Case& c) { return turns(c) && is_in_a_box(c); }};
+inline constexpr Scope to_a_fraction{
+    "on compaction, isotropic and relaxation paths",
+    [](const Case& c) { return (turns(c) && is_in_a_box(c)) || is_path(c, LoadingPath::relaxation); }};
+inline constexpr Scope to_a_stress{"in a box, on paths that are not stages",
+                                   [](const Case& c) { return is_in_a_box(c) && c.stages.empty(); }};
+inline constexpr Scope bpm_to_an_overlap{"on bpm in a box, on compaction, isotropic and relaxation paths",
+                                         [](const Case& c) { return is_bpm(c) && to_a_fraction.covers(c); }};
+inline constexpr Scope biaxial{"on biaxial paths",
+                               [](const Case& c) { return is_path(c, LoadingPath::biaxial); }};
+inline constexpr Scope relaxing{"on relaxation paths",
+                                [](const Case& c) { return is_path(c, LoadingPath::relaxation); }};
 inline constexpr Scope with_unloading{"with loading.unload_at",
-                                      [](const Case& c) { return !c.loading.unload_at.empty(); }};
+                                      [](const Case& c) { return turns(c) && !c.loading.unload_at.empty(); }};
 
 }  // namespace scope
 

@@ -11,7 +11,11 @@ template <>
 std::span<const Word<LoadingPath>> words_of() {
   static constexpr std::array words{Word{LoadingPath::diametral, "diametral"},
                                     Word{LoadingPath::compaction, "compaction"},
-                                    Word{LoadingPath::isotropic, "isotropic"}};
+                                    Word{LoadingPath::isotropic, "isotropic"},
+                                    Word{LoadingPath::biaxial, "biaxial"},
+                                    Word{LoadingPath::die, "die"},
+                                    Word{LoadingPath::relaxation, "relaxation"},
+                                    Word{LoadingPath::stages, "stages"}};
   return words;
 }
 
@@ -84,6 +88,12 @@ std::span<const Word<SizeLaw>> words_of() {
 template <>
 std::span<const Word<Precision>> words_of() {
   static constexpr std::array words{Word{Precision::single, "single"}, Word{Precision::full, "double"}};
+  return words;
+}
+
+template <>
+std::span<const Word<Wave>> words_of() {
+  static constexpr std::array words{Word{Wave::sine, "sine"}, Word{Wave::triangle, "triangle"}};
   return words;
 }
 

@@ -41,6 +41,8 @@ template <>
 std::span<const Word<SizeLaw>> words_of();
 template <>
 std::span<const Word<Precision>> words_of();
+template <>
+std::span<const Word<Wave>> words_of();
 
 /// "diametral" for LoadingPath::diametral.
 template <class Enum>

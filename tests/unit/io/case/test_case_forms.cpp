@@ -22,7 +22,7 @@ const std::string box = "[experiment]\nloading = 'compaction'\nmodel = 'mpm'\n";
 
 }  // namespace
 
-TEST_CASE("a kind, its pairs and stages say what the short form says") {
+TEST_CASE("a kind and its pairs say what the short form says") {
   const std::string in_short = R"(
 [experiment]
 loading = "compaction"
@@ -42,11 +42,7 @@ grains = 210
 smallest_diameter = "1 mm"
 largest_diameter = "2 mm"
 [loading]
-wall_velocity = "0.5 m/s"
 max_strain = 0.3
-max_stress = "5 MPa"
-unload_at = [0.1, 0.2]
-unload_by = 0.02
 )";
   const std::string in_long = R"(
 [experiment]
@@ -72,65 +68,145 @@ cells = 8
 [box]
 x = "walls"
 y = "walls"
-[[stage]]
-name = "press"
-yy = { velocity = "0.5 m/s" }
-until = { strain = 0.1 }
-[[stage]]
-yy = { velocity = "-0.5 m/s" }
-until = { strain = 0.08 }
-[[stage]]
-yy = { velocity = "0.5 m/s" }
-until = { strain = 0.2 }
-[[stage]]
-yy.velocity = "-0.5 m/s"
-until.strain = 0.18
-[[stage]]
-yy = { velocity = "0.5 m/s" }
-until = { strain = 0.3, stress_yy = "5 MPa" }
+[loading]
+max_strain = 0.3
 )";
   CHECK(resolved(in_long) == resolved(in_short));
   CHECK(resolved(in_long, {"loading.max_strain=0.4", "kind.density=1000"}) ==
         resolved(in_short, {"loading.max_strain=0.4", "grain.density=1000"}));
 }
 
-TEST_CASE("stages on all four sides are isotropic, and a last stage keeps a stress") {
+TEST_CASE("stages say what each part does, until what, and how often") {
   const Case read = parse_case(R"(
-[[kind]]
-model = "mpm"
-diameter = "2 mm"
 [[stage]]
-xx = { velocity = "1 m/s" }
+name = "press"
 yy = { velocity = "1 m/s" }
-until = { strain = 0.4, stress_yy = "1 MPa" }
+xx = { stress = "0.2 MPa", speed = "0.5 m/s" }
+until = { stress_yy = "1 MPa", strain = 0.4 }
 [[stage]]
-yy = { stress = "1 MPa" }
+top = { stress = "1 MPa", stress_amplitude = "0.1 MPa", period = "2 ms", wave = "triangle" }
+left = "rest"
 until = { time = "3 ms" }
+[[stage]]
+xx = { strain_amplitude = 0.01, period = "1 ms" }
+bottom = { rate = "-20 1/s" }
+until = { time = "5 ms", strain_xx = 0.1, stress_bottom = 0, packing_fraction = 0.9, overlap = 0.01, rest = 1e-3 }
+repeat = 3
+repeat_from = "press"
 )",
                                "case.toml");
-  CHECK(read.experiment.loading == LoadingPath::isotropic);
-  CHECK(read.loading.wall_velocity == 1);
-  CHECK(read.loading.max_strain == 0.4);
-  CHECK(read.loading.max_stress == 0);  // it is kept, not an end
-  CHECK(read.loading.hold_stress == 1e6);
-  CHECK(read.loading.hold == 3e-3);
-  CHECK(read.sample.smallest_diameter == 2e-3);
-  CHECK(read.sample.largest_diameter == 2e-3);
-  CHECK(read.grain.radius == 1e-3);
+  CHECK(read.experiment.loading == LoadingPath::stages);
+  REQUIRE(read.stages.size() == 3);
+  const Stage &press = read.stages[0], &swing = read.stages[1], &last = read.stages[2];
+  CHECK(press.name == "press");
+  CHECK(press.drives ==
+        std::vector<Drive>{{.part = Part::yy, .control = Control::velocity, .value = 1},
+                           {.part = Part::xx, .control = Control::stress, .value = 2e5, .speed = 0.5}});
+  CHECK(press.until.strain[0] == 0.4);
+  CHECK(press.until.stress[static_cast<std::size_t>(Part::yy)] == 1e6);
+  CHECK_FALSE(press.until.time);
+  CHECK(swing.drives == std::vector<Drive>{{.part = Part::top,
+                                            .control = Control::stress,
+                                            .value = 1e6,
+                                            .amplitude = 1e5,
+                                            .period = 2e-3,
+                                            .wave = Wave::triangle},
+                                           {.part = Part::left}});
+  CHECK(last.drives ==
+        std::vector<Drive>{{.part = Part::xx, .control = Control::strain, .amplitude = 0.01, .period = 1e-3},
+                           {.part = Part::bottom, .control = Control::rate, .value = -20}});
+  CHECK(last.until.time == 5e-3);
+  CHECK(last.until.strain[1] == 0.1);
+  CHECK(last.until.stress[static_cast<std::size_t>(Part::bottom)] == 0);
+  CHECK(last.until.packing_fraction == 0.9);
+  CHECK(last.until.overlap == 0.01);
+  CHECK(last.until.rest == 1e-3);
+  CHECK(last.repeat == 3);
+  CHECK(last.repeat_from == "press");
 }
 
-TEST_CASE("rests after every way become loading.hold") {
-  const std::string way = "[[stage]]\nyy = { velocity = 1 }\nuntil = { strain = 0.2 }\n";
-  const std::string rest = "[[stage]]\nyy = 'rest'\nuntil = { time = '1 ms' }\n";
-  const Case read = parse_case(way + rest, "case.toml");
-  CHECK(read.loading.hold == 1e-3);
-  CHECK(read.loading.max_strain == 0.2);
-  const std::string back = "[[stage]]\nyy = { velocity = -1 }\nuntil = { strain = 0.1 }\n";
-  const std::string again = "[[stage]]\nyy = { velocity = 1 }\nuntil = { strain = 0.3 }\n";
-  CHECK(parse_case(way + rest + back + rest + again + rest, "case.toml").loading.unload_at ==
-        std::vector{0.2});
-  CHECK(mentions(refusal(way + rest + back + again),
-                 "walls rest after every one of the 3 ways, or after none"));
+TEST_CASE("the resolved case keeps its stages, and reads back to itself") {
+  const std::string text =
+      "[[stage]]\nname = 'pre\"ss'\nyy = { velocity = 0.1 }\nuntil = { stress_top = 12345.678, time = 1e-7 "
+      "}\n"
+      "[[stage]]\nxx = { stress = 3e5, stress_amplitude = 1e3, period = 1e-3, wave = 'triangle' }\n"
+      "yy = { strain_amplitude = 0.1, period = 3 }\nleft = 'rest'\nuntil.time = 2\nrepeat = 4\n";
+  const std::string refused = refusal(text);
+  CHECK(mentions(refused, "xx and left both move one wall"));
+  std::string good = text;
+  good.replace(good.find("left = 'rest'\n"), 14, "");
+  const Case read = parse_case(good, "case.toml"), again = parse_case(resolved_case_text(read), "case.toml");
+  CHECK(resolved_case_text(again) == resolved_case_text(read));
+  REQUIRE(again.stages.size() == 2);
+  CHECK(again.stages[0].name == "pre\"ss");
+  for (std::size_t k = 0; k < 2; ++k) {
+    CHECK(again.stages[k].drives == read.stages[k].drives);
+    CHECK(again.stages[k].until == read.stages[k].until);
+    CHECK(again.stages[k].repeat == read.stages[k].repeat);
+  }
+  CHECK(case_json(read).find("\"stress_top\": 12345.678") != std::string::npos);
+  CHECK(case_json(Case{}).find("\"stage\"") == std::string::npos);
+}
+
+TEST_CASE("walls go as fast as the fastest stage says, unless loading.wall_velocity does") {
+  const std::string stages =
+      "[[stage]]\nyy = { velocity = 1 }\nuntil.strain = 0.1\n[[stage]]\nxx = { velocity = -3 }\nuntil.time = "
+      "1\n";
+  CHECK(parse_case(stages, "case.toml").loading.wall_velocity == 3);
+  CHECK(parse_case(stages, "case.toml", {"loading.wall_velocity=2"}).loading.wall_velocity == 2);
+  const std::string kept = "[[stage]]\nyy = { stress = 1e5 }\nuntil.time = 1\n";
+  CHECK(parse_case(kept, "case.toml").loading.wall_velocity == Case{}.loading.wall_velocity);
+}
+
+TEST_CASE("stages that contradict themselves, or the path of the case, are refused where they stand") {
+  const auto why = [](const std::string& text, const std::string& place, const std::string& words) {
+    const std::string message = refusal(text);
+    CAPTURE(message);
+    CHECK(mentions(message, "case.toml:" + place + ": error: "));
+    CHECK(mentions(message, words));
+  };
+  const std::string until = "until = { time = 1 }\n", stage = "[[stage]]\n";
+  why(stage + "yy = { velocity = 1, stress = 1e6 }\n" + until, "2:22",
+      "stage.yy takes one of velocity, rate, stress");
+  why(stage + "yy = { velocity = 1, rate = 1 }\n" + until, "2:22", "got velocity and rate");
+  why(stage + "yy = { velocity = 1 }\ntop = { stress = 1e6 }\n" + until, "1:1",
+      "yy and top both move one wall");
+  why(stage + "yy = { velocity = 1 }\n", "1:1", "it never ends: give until");
+  why(stage + "yy = { stress = 1 }\nuntil = { rest = 1e-3 }\n", "1:1", "give until.time too");
+  why(stage + "yy = { strain_amplitude = 0.1 }\n" + until, "1:1", "so it needs a period");
+  why(stage + "yy = { velocity = 1, period = 1 }\n" + until, "2:22",
+      "stage.yy.period needs strain_amplitude");
+  why(stage + "yy = { velocity = 1, speed = 1 }\n" + until, "2:22", "stage.yy.speed needs stress");
+  why(stage + "yy = { stress = 1, stress_amplitude = 2, period = 1 }\n" + until, "1:1",
+      "would pull the grains");
+  why(stage + until + "repeat = 1.5\n", "3:1", "stage.repeat takes a whole number");
+  why(stage + until + "repeat = 2\nrepeat_from = 'x'\n", "1:1", "no stage before has this name");
+  why(stage + until + "repeat_from = 'x'\n", "1:1", "repeat_from needs repeat = 2 or more");
+  why(stage + until + "name = 3\n", "3:1", "stage.name takes a text");
+  why("[experiment]\nloading = 'compaction'\n" + stage + "yy = { velocity = 1 }\n" + until, "2:1",
+      "experiment.loading \"compaction\" and [[stage]] both say what the walls do");
+  why("[experiment]\nloading = 'stages'\n", "2:1", "needs tables [[stage]]");
+  why("[experiment]\nloading = 'diametral'\n" + stage + "yy = { stress = 1e6 }\n" + until, "3:1",
+      "one grain between two walls");
+  CHECK(refusal("[experiment]\nloading = 'diametral'\n" + stage + "yy = { velocity = 1 }\n" + until).empty());
+}
+
+TEST_CASE("a short form says what it needs, and keys of other paths are without effect") {
+  const auto path = [](const std::string& name, const std::string& keys = "") {
+    return "[experiment]\nmodel = 'mpm'\nloading = '" + name + "'\n[loading]\n" + keys;
+  };
+  CHECK(mentions(refusal(path("biaxial")), "needs loading.confining_stress > 0"));
+  CHECK(mentions(refusal(path("die")), "needs loading.max_stress > 0"));
+  CHECK(mentions(refusal(path("relaxation")), "needs loading.hold > 0"));
+  CHECK(refusal(path("biaxial", "confining_stress = 1e5\n")).empty());
+  CHECK(refusal(path("die", "max_stress = 1e5\n")).empty());
+  CHECK(refusal(path("relaxation", "hold = 1e-3\nrest = 1e-4\n")).empty());
+  const CaseReading reading = parse_case_with_notes(
+      path("die", "max_stress = 1e5\nconfining_stress = 1e5\nunload_at = [0.1]\n"), "case.toml");
+  CHECK(reading.without_effect == std::vector<std::string>{"loading.unload_at", "loading.confining_stress"});
+  const CaseReading stages = parse_case_with_notes(
+      "[loading]\nmax_strain = 0.2\n[[stage]]\nyy = { velocity = 1 }\nuntil.strain = 0.1\n", "case.toml");
+  CHECK(stages.without_effect == std::vector<std::string>{"loading.max_strain"});
 }
 
 TEST_CASE("laws of diameters are implied by what is given, and shares are of area") {
@@ -171,41 +247,10 @@ TEST_CASE("what comes with later versions is refused by key and line, and says w
   check_not_yet("[[kind]]\nname = 'a'\n[[pair]]\nbetween = ['a', 'a']\nsurface_energy = '0.05 J/m^2'\n",
                 "5:18", "today it is 0");
   check_not_yet("[[kind]]\nname = 'a'\n[[pair]]\nbetween = ['a', 'bottom']\n", "4:1", "is all of them");
-  check_not_yet("[[stage]]\nyy = { rate = '-1 1/s' }\n", "2:8", "walls move at a velocity");
   check_not_yet("[[stage]]\nxy = { velocity = 1 }\n", "2:1", "walls do not shear");
   check_not_yet(
       "[[stage]]\nyy = { velocity = 1 }\nuntil = { strain = 0.1 }\nset = { 'pair.friction' = 0.3 }\n", "4:1",
       "hold for the whole run");
-}
-
-TEST_CASE("stages that no path of today makes are refused where they stand, with what they lack") {
-  const auto stage = [](const std::string& yy, const std::string& until) {
-    return "[[stage]]\nyy = { velocity = " + yy + " }\nuntil = { " + until + " }\n";
-  };
-  const std::string press = stage("1", "strain = 0.2"), back = stage("-1", "strain = 0.1");
-  const auto why = [](const std::string& text, const std::string& words) {
-    const std::string message = refusal(text);
-    CAPTURE(message);
-    CHECK(mentions(message, "error: not yet: this [[stage]]: "));
-    CHECK(mentions(message, words));
-  };
-  why(press + back, "the last way is one together");
-  why(press + stage("-2", "strain = 0.1") + press, "at the same speed");
-  why(press + press, "walls come together, go apart");
-  why(back, "walls come together, go apart");
-  why(stage("1", "stress_yy = '1 MPa'"), "ends at until.strain");
-  why(press + back + stage("1", "strain = 0.3") + stage("-1", "strain = 0.25") + stage("1", "strain = 0.4"),
-      "all ways apart have the same length");
-  why("[[stage]]\nuntil = { strain = 0.2 }\n", "says what yy does");
-  why("[[stage]]\nyy = 'rest'\nuntil = { time = 1 }\n", "the first stage moves the walls");
-  why("[[stage]]\nyy = { velocity = 1 }\nxx = { velocity = 2 }\nuntil = { strain = 0.1 }\n",
-      "side walls come in");
-  why("[experiment]\nloading = 'compaction'\n[[stage]]\nyy = { velocity = 1 }\nxx = { velocity = 1 }\nuntil "
-      "= { "
-      "strain = 0.1 }\n",
-      "moves no side walls");
-  why(stage("1", "strain = 0.2, stress_yy = '1 MPa'") + back + press, "only the last way ends at");
-  CHECK(mentions(refusal(press + back), "case.toml:4:1: error"));
 }
 
 TEST_CASE("mistakes in the long form are told with line, column and remedy") {
@@ -239,8 +284,8 @@ TEST_CASE("mistakes in the long form are told with line, column and remedy") {
   CHECK(
       mentions(refusal("[[stage]]\nyy = { velocity = '1 m' }\n"),
                "case.toml:2:19: error: stage.yy.velocity: unit 'm' has the wrong dimension for a velocity"));
-  CHECK(mentions(refusal("[[stage]]\nuntil = { stress_yy = 0 }\n"),
-                 "stage.until.stress_yy = 0 is out of range: it must be > 0\n"));
+  CHECK(mentions(refusal("[[stage]]\nuntil = { stress_yy = -1 }\n"),
+                 "stage.until.stress_yy = -1 is out of range: it must be >= 0\n"));
   CHECK(mentions(refusal("[[stage]]\nyy = 'roll'\n"), "stage.yy takes \"rest\", got 'roll'"));
   CHECK(mentions(refusal("", {"stage.yy.velocity=1"}), "stands in a table of the file only"));
   CHECK(mentions(refusal("", {"kind.law.young_modulus=5 mm"}), "--set kind.law.young_modulus=5 mm: error:"));

@@ -27,7 +27,7 @@ void check_words(Enum last) {
 }  // namespace
 
 TEST_CASE("every choice of a case has its own word, which leads back to it") {
-  check_words(LoadingPath::isotropic);
+  check_words(LoadingPath::stages);
   check_words(GrainModel::mpm);
   check_words(EqualPrimaries::size);
   check_words(MaterialLaw::von_mises);
@@ -37,4 +37,5 @@ TEST_CASE("every choice of a case has its own word, which leads back to it") {
   check_words(ContactOn::grid_nodes);
   check_words(Activation::closed_at_end_of_step);
   check_words(Precision::single);
+  check_words(Wave::triangle);
 }

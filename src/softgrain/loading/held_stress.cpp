@@ -1,4 +1,4 @@
-#include "softgrain/experiment/held_stress.hpp"
+#include "softgrain/loading/held_stress.hpp"
 
 #include <fmt/core.h>
 
@@ -25,17 +25,6 @@ void HeldStress::add(double stress, std::int64_t step, std::int64_t steps) {
   squares += window * window;
   largest = std::max(largest, window);
   window = 0;
-}
-
-void HeldStress::visit(StateVisitor& visit) {
-  const auto declare = [&](std::string_view name, std::string_view text, double& value) {
-    visit({name, "", Owner::run, Role::sum, text}, value);
-  };
-  declare("held_windows", "equal times of the second half of a hold that are over", windows);
-  declare("held_sum", "of their mean stresses over the stress asked for", sum);
-  declare("held_squares", "of the squares of these", squares);
-  declare("held_largest", "the largest of these", largest);
-  declare("held_window", "of the present time so far", window);
 }
 
 }  // namespace softgrain

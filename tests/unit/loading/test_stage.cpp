@@ -1,4 +1,4 @@
-#include "softgrain/experiment/stage.hpp"
+#include "softgrain/loading/stage.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/experiment/loading.hpp"
+#include "softgrain/experiment/stages_of_case.hpp"
+#include "support/spring_box.hpp"
 
 using namespace softgrain;
 
@@ -29,16 +30,18 @@ struct Leg {
 
 /// The stages of a case as steps of dt really go through them, in a box of this height.
 std::vector<Leg> legs_of(const Case& c, double h, double dt) {
-  Box<2> box({{{0, 0}, {0, 1}, {}}, {{0, h}, {0, -1}, {}}, {{0, 0}, {1, 0}, {}}, {{h, 0}, {-1, 0}, {}}});
-  Loading loading(stages_of(c), strain_measure(c, h), {}, h);
+  Box<2> box = test::square_box(h);
+  Loading loading(stages_of(c), frame_of(c), box);
+  test::SpringModel model(0);
   std::vector<Leg> legs;
   const std::int64_t planned = loading.steps_planned(dt);
   std::int64_t step = 0;
   for (; !loading.finished(); ++step) {
-    const double time = static_cast<double>(step) * dt, speed = loading.approach_speed(box, time, dt);
-    loading.drive(box, speed);
-    for (Wall<2>& wall : box.walls) wall.point += dt * wall.velocity;
-    loading.after_step(box, time + dt, dt, 0, 0);
+    const double time = static_cast<double>(step) * dt;
+    loading.drive(box, model, time, dt);
+    const double speed = box.walls[bottom_wall].velocity[1] - box.walls[top_wall].velocity[1];
+    model.step(box, dt);
+    loading.after_step(box, time + dt, dt, {});
     if (loading.number() == static_cast<int>(legs.size())) legs.push_back({-speed, 0, 0});
     REQUIRE(std::abs(speed) <= c.loading.wall_velocity * (1 + 1e-6));
     legs.back().strain = loading.strain(box);
@@ -90,12 +93,14 @@ TEST_CASE("a loading of 60 turns ends where the case says, though a step is long
 TEST_CASE("a stage counts from the travel really made, whatever came before") {
   const Case c = case_of(LoadingPath::diametral, {.wall_velocity = 0.2, .max_strain = 0.1, .unload_at = {}});
   const double dt = 0.25e-6;
-  Loading loading(stages_of(c), strain_measure(c, 2 * R), {}, 2 * R);
-  Box<2> box({{{0, 0}, {0, 1}, {}}, {{0, 2 * R - 0.7 * 0.2 * dt}, {0, -1}, {}}});  // ahead of the loading
+  Box<2> box({{{0, 0}, {0, 1}, {}}, {{0, 2 * R}, {0, -1}, {}}});
+  Loading loading(stages_of(c), frame_of(c), box);
+  box.walls[top_wall].point[1] -= 0.7 * 0.2 * dt;  // ahead of the loading
+  const test::SpringModel model(0);
   for (double time = 0; !loading.finished(); time += dt) {
-    loading.drive(box, loading.approach_speed(box, time, dt));
+    loading.drive(box, model, time, dt);
     for (Wall<2>& wall : box.walls) wall.point += dt * wall.velocity;
-    loading.after_step(box, time + dt, dt, 0, 0);
+    loading.after_step(box, time + dt, dt, {});
   }
   CHECK(loading.strain(box) == doctest::Approx(0.1).epsilon(1e-9));
 }
@@ -150,4 +155,54 @@ TEST_CASE("a loading that cannot be followed is refused with the key and the val
                        "loading.unload_at must rise and stay below loading.max_strain 0.2, with 0 < "
                        "loading.unload_by 0.01 < each; got 0.25",
                        UsageError);
+}
+
+TEST_CASE("a sine and a triangle begin at 0, reach 1 after a quarter and -1 after three") {
+  for (const Wave wave : {Wave::sine, Wave::triangle}) {
+    const double at[] = {0, 0.25, 0.5, 0.75, 1, 1.25}, value[] = {0, 1, 0, -1, 0, 1};
+    for (int k = 0; k < 6; ++k)
+      CHECK(wave_at(wave, 3 * at[k], 3) == doctest::Approx(value[k]).epsilon(1e-12));
+  }
+  CHECK(wave_at(Wave::triangle, 0.125, 1) == doctest::Approx(0.5));
+  CHECK(wave_at(Wave::sine, 0.125, 1) == doctest::Approx(std::sqrt(0.5)));
+}
+
+TEST_CASE("a group of stages is repeated as often as it is asked for, and a group within a group too") {
+  const auto stage = [](const char* name, int repeat = 1, const char* from = "") {
+    return Stage{.name = name, .until = {.time = 1}, .repeat = repeat, .repeat_from = from};
+  };
+  const auto names = [](const std::vector<Stage>& stages) {
+    std::string text;
+    for (const Stage& s : without_repeats(stages)) text += s.name;
+    return text;
+  };
+  CHECK(names({stage("a"), stage("b"), stage("c", 3, "b"), stage("d")}) == "abcbcbcd");
+  CHECK(names({stage("a", 3)}) == "aaa");
+  CHECK(names({stage("a"), stage("b", 2), stage("c", 2, "a")}) == "abbcabbc");
+  CHECK_THROWS_WITH_AS(names({stage("a", 2, "z")}), "repeat_from = \"z\": no stage before has this name",
+                       UsageError);
+  CHECK_THROWS_AS(names({stage("a", 200'000)}), UsageError);
+}
+
+TEST_CASE("stages that contradict themselves or may never end are refused") {
+  const auto fault = [](std::vector<Drive> drives, Until until) {
+    return fault_of({.name = "s", .drives = std::move(drives), .until = until});
+  };
+  const Drive yy{.part = Part::yy, .control = Control::velocity, .value = 1};
+  CHECK(fault({yy}, {.time = 1}).empty());
+  CHECK(fault({yy, {.part = Part::top}}, {.time = 1}) == "yy and top both move one wall: give one of them");
+  CHECK(fault({yy, {.part = Part::xx}, {.part = Part::left}}, {.time = 1}).starts_with("xx and left"));
+  CHECK(fault({{.part = Part::bottom}, {.part = Part::top}}, {.time = 1}).empty());
+  CHECK(fault({yy}, {}).starts_with("it never ends: give until"));
+  const Drive keeps{.part = Part::xx, .control = Control::stress, .value = 1e6};
+  CHECK(fault({keeps}, {.rest = 1e-3}).find("give until.time too") != std::string::npos);
+  CHECK(fault({keeps, yy}, {.rest = 1e-3}).empty());  // it stops at a strain of 3
+  CHECK(fault({{.part = Part::yy, .control = Control::strain, .amplitude = 0.1}}, {.time = 1})
+            .find("needs a period") != std::string::npos);
+  Drive pulls = keeps;
+  pulls.amplitude = 2e6;
+  pulls.period = 1;
+  CHECK(fault({pulls}, {.time = 1}).find("would pull the grains") != std::string::npos);
+  CHECK_THROWS_WITH_AS(check_stages({{.until = {.time = 1}}, {}}),
+                       "stage 1: it never ends: give until, as in until = { time = \"1 ms\" }", UsageError);
 }

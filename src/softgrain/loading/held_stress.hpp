@@ -3,12 +3,10 @@
 #include <cstdint>
 #include <string>
 
-#include "softgrain/state/field.hpp"
-
 namespace softgrain {
 
-/// How well a stress is kept over the second half of a hold: its means over 200 equal times, and what becomes
-/// of them, all over the stress that is asked for.
+/// How well a stress is kept over the second half of a stage: its means over 200 equal times, and what
+/// becomes of them, all over the stress that is asked for.
 struct HeldStress {
   double mean() const { return windows > 0 ? sum / windows : 0; }
   double deviation() const;  ///< standard
@@ -17,9 +15,8 @@ struct HeldStress {
   /// "1.002 of it in the mean, 0.013 of standard deviation, 1.05 at most".
   std::string text() const;
 
-  /// Takes the stress over the one asked for of step k of the hold, of `steps` steps.
+  /// Takes the stress over the one asked for of step k of the stage, of `steps` steps.
   void add(double stress, std::int64_t step, std::int64_t steps);
-  void visit(StateVisitor& visit);
 
   double windows = 0, sum = 0, squares = 0, largest = 0;
   double window = 0;  ///< of the present one so far

@@ -1,0 +1,218 @@
+#include "softgrain/experiment/stages_of_case.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "softgrain/core/error.hpp"
+
+namespace softgrain {
+namespace {
+
+constexpr auto yy = static_cast<std::size_t>(Part::yy), top = static_cast<std::size_t>(Part::top);
+
+Drive at_velocity(Part part, double velocity) {
+  return {.part = part, .control = Control::velocity, .value = velocity};
+}
+Drive keeps(Part part, double stress) { return {.part = part, .control = Control::stress, .value = stress}; }
+
+Stage rest(double time) { return {.name = "rest", .until = {.time = time}}; }
+
+/// Of top and bottom wall: side walls of a biaxial path, which make room for a box that flattens.
+constexpr double side_speed = 5;
+
+/// What a short form leaves its path for.
+std::vector<Exit> exits_of(const Case& c) {
+  std::vector<Exit> exits;
+  if (!is_in_a_box(c)) return exits;
+  if (c.loading.max_stress > 0)
+    exits.push_back({.stress = c.loading.max_stress, .key = "loading.max_stress"});
+  if (c.loading.max_overlap > 0)
+    exits.push_back({.overlap = c.loading.max_overlap, .key = "loading.max_overlap"});
+  if (c.loading.hold_stress > 0)
+    exits.push_back({.stress = c.loading.hold_stress, .key = "loading.hold_stress", .to_last = true});
+  return exits;
+}
+
+/// Diametral, compaction and isotropic.
+std::vector<Stage> turning(const Case& c) {
+  const Case::Loading& loading = c.loading;
+  const Part part = is_isotropic(c) ? Part::all : Part::top;
+  std::vector<Stage> stages;
+  const auto go_to = [&](double strain) {
+    Stage stage{.name = "move", .drives = {at_velocity(part, loading.wall_velocity)}, .towards = true};
+    stage.until.strain[0] = strain;
+    stages.push_back(stage);
+    if (loading.hold > 0) stages.push_back(rest(loading.hold));
+  };
+  const double last = last_strain(c);
+  for (const double turn : loading.unload_at) {
+    if (turn >= last) break;
+    go_to(turn);
+    go_to(turn - loading.unload_by);
+  }
+  go_to(last);
+  for (Stage& stage : stages) stage.exits = exits_of(c);
+  if (!is_in_a_box(c) || loading.hold_stress == 0) return stages;
+  Stage hold{.name = "hold",
+             .drives = {keeps(Part::top, loading.hold_stress)},
+             .until = {.time = loading.hold},
+             .only_by_exit = true,
+             .key = "loading.hold_stress"};
+  if (is_isotropic(c))
+    hold.drives = {keeps(Part::yy, loading.hold_stress), keeps(Part::xx, loading.hold_stress)};
+  stages.push_back(hold);
+  return stages;
+}
+
+std::vector<Stage> biaxial(const Case& c) {
+  const double v = c.loading.wall_velocity, confining = c.loading.confining_stress;
+  Stage confine{.name = "confine",
+                .drives = {at_velocity(Part::all, v)},
+                .key = "loading.confining_stress",
+                .limit = c.loading.max_strain};
+  confine.until.stress[yy] = confining;
+  const Stage keep{.name = "keep",
+                   .drives = {keeps(Part::yy, confining), keeps(Part::xx, confining)},
+                   .until = {.time = c.loading.hold},
+                   .key = "loading.confining_stress"};
+  Stage compress{.name = "compress",
+                 .drives = {at_velocity(Part::yy, v), keeps(Part::xx, confining)},
+                 .key = "loading.confining_stress"};
+  compress.drives.back().speed = side_speed * v;
+  compress.until.strain[0] = c.loading.max_strain;
+  if (c.loading.max_stress > 0)
+    compress.exits = {{.stress = c.loading.max_stress, .key = "loading.max_stress"}};
+  if (c.loading.hold == 0) return {confine, compress};
+  return {confine, keep, compress};
+}
+
+std::vector<Stage> die(const Case& c) {
+  const double v = c.loading.wall_velocity, stress = c.loading.max_stress;
+  constexpr std::string_view key = "loading.max_stress";
+  Stage press{
+      .name = "press", .drives = {at_velocity(Part::top, v)}, .key = key, .limit = c.loading.max_strain};
+  press.until.stress[top] = stress;
+  const Stage hold{
+      .name = "hold", .drives = {keeps(Part::top, stress)}, .until = {.time = c.loading.hold}, .key = key};
+  Stage unload{.name = "unload", .drives = {at_velocity(Part::top, -v)}};
+  unload.until.stress[top] = 0;
+  if (c.loading.hold == 0) return {press, unload};
+  return {press, hold, unload};
+}
+
+std::vector<Stage> relaxation(const Case& c) {
+  Stage press{.name = "press", .drives = {at_velocity(Part::top, c.loading.wall_velocity)}, .towards = true};
+  press.until.strain[0] = last_strain(c);
+  press.exits = exits_of(c);
+  Stage relax = rest(c.loading.hold);
+  if (c.loading.rest > 0) relax.until.rest = c.loading.rest;
+  return {press, relax};
+}
+
+void check_turns(const Case::Loading& loading) {
+  double strain = 0;
+  for (const double turn : loading.unload_at) {
+    require(turn > strain && turn < loading.max_strain && loading.unload_by > 0 && loading.unload_by < turn,
+            "loading.unload_at must rise and stay below loading.max_strain {}, with 0 < loading.unload_by {} "
+            "< each; got {}",
+            loading.max_strain, loading.unload_by, turn);
+    strain = turn - loading.unload_by;
+  }
+}
+
+/// m/s of walls that a drive moves at their fastest.
+double speed_of(const Drive& drive, double length) {
+  switch (drive.control) {
+    case Control::velocity:
+      return std::abs(drive.value);
+    case Control::rate:
+      return std::abs(drive.value) * length;
+    case Control::stress:
+      return drive.speed;
+    case Control::strain:
+      return 2 * std::numbers::pi * drive.amplitude / drive.period * length;
+    case Control::rest:
+      break;
+  }
+  return 0;
+}
+
+}  // namespace
+
+LoadingFrame frame_of(const Case& c) {
+  LoadingFrame frame{.measure = {},
+                     .wall_velocity = c.loading.wall_velocity,
+                     .aspect = c.sample.aspect,
+                     .packing_fraction = c.sample.packing_fraction};
+  if (!is_in_a_box(c)) frame.measure = {StrainMeasure::Kind::of_grain, 2 * c.grain.radius};
+  return frame;
+}
+
+double last_strain(const Case& c) {
+  if (!c.stages.empty()) {
+    double last = 0;
+    for (const Stage& stage : c.stages) last = std::max(last, stage.until.strain[0].value_or(0));
+    return last;
+  }
+  if (c.loading.max_packing_fraction == 0 || !is_in_a_box(c)) return c.loading.max_strain;
+  const double filled = std::log(c.loading.max_packing_fraction / c.sample.packing_fraction);
+  return std::min(c.loading.max_strain, filled / (is_isotropic(c) ? 2 : 1));
+}
+
+void check_loading(const Case& c) {
+  const Case::Loading& loading = c.loading;
+  require(loading.wall_velocity > 0, "loading.wall_velocity must be > 0, got {} m/s", loading.wall_velocity);
+  if (!c.stages.empty()) return check_stages(c.stages);
+  require(loading.max_strain > 0, "loading.max_strain must be > 0, got {}", loading.max_strain);
+  require(loading.hold >= 0, "loading.hold must be >= 0, got {} s", loading.hold);
+  require(loading.hold_stress == 0 || loading.hold > 0,
+          "loading.hold_stress {} Pa needs loading.hold > 0: for how long", loading.hold_stress);
+  const LoadingPath path = c.experiment.loading;
+  if (path != LoadingPath::biaxial && path != LoadingPath::die && path != LoadingPath::relaxation)
+    check_turns(loading);
+}
+
+std::vector<Stage> stages_of(const Case& c) {
+  if (!c.stages.empty()) return c.stages;
+  switch (c.experiment.loading) {
+    case LoadingPath::biaxial:
+      return biaxial(c);
+    case LoadingPath::die:
+      return die(c);
+    case LoadingPath::relaxation:
+      return relaxation(c);
+    default:
+      return turning(c);
+  }
+}
+
+double least_kept_stress(const Case& c) {
+  double least = 0;
+  for (const Stage& stage : stages_of(c))
+    for (const Drive& drive : stage.drives)
+      if (drive.control == Control::stress) least = least == 0 ? drive.value : std::min(least, drive.value);
+  return least;
+}
+
+double largest_named_stress(const Case& c) {
+  double largest = 0;
+  for (const Stage& stage : stages_of(c)) {
+    for (const Drive& drive : stage.drives)
+      if (drive.control == Control::stress) largest = std::max(largest, drive.value);
+    for (const auto& stress : stage.until.stress) largest = std::max(largest, stress.value_or(0));
+    for (const Exit& exit : stage.exits) largest = std::max(largest, exit.stress);
+  }
+  return largest;
+}
+
+double fastest_speed(const Case& c, double height) {
+  double fastest = 0;
+  for (const Stage& stage : c.stages)
+    for (const Drive& drive : stage.drives)
+      fastest =
+          std::max(fastest, speed_of(drive, axis_of(drive.part) == 1 ? height : c.sample.aspect * height));
+  return fastest;
+}
+
+}  // namespace softgrain

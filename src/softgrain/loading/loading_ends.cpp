@@ -1,0 +1,59 @@
+#include <algorithm>
+
+#include "softgrain/loading/loading.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Of the largest stress so far: grains that bear less are unloaded.
+constexpr double no_stress = 1e-3;
+
+}  // namespace
+
+const Exit* Loading::exit_taken(const StepFelt& felt) const {
+  for (const Exit& exit : stage_now().exits) {
+    if (exit.overlap > 0 && felt.overlap_mean >= exit.overlap) return &exit;
+    const bool presses = !exit.to_last || closing_[0] > 0;
+    if (exit.stress > 0 && presses && present_stress(0) >= exit.stress) return &exit;
+  }
+  return nullptr;
+}
+
+bool Loading::is_over(const Box<2>& box, const StepFelt& felt) const {
+  const Until& until = stage_now().until;
+  for (int c = 0; c < 2 && !stage_now().towards; ++c)
+    if (until.strain[c] && is_at_strain(box, c, *until.strain[c])) return true;
+  for (std::size_t p = 0; p < parts_with_stress; ++p)
+    if (until.stress[p] && is_at_stress(p, *until.stress[p])) return true;
+  if (until.overlap && felt.overlap_mean >= *until.overlap) return true;
+  if (until.rest && felt.unrest < *until.rest) return true;
+  if (!until.packing_fraction) return false;
+  const double shrunk = frame_.start[0] * frame_.start[1] / (length(box, 0) * length(box, 1));
+  return frame_.packing_fraction * shrunk >= *until.packing_fraction;
+}
+
+std::array<double, 2> Loading::strains_at_stage() const {
+  return {frame_.strain(0, length_at_stage_[0]), frame_.strain(1, length_at_stage_[1])};
+}
+
+/// From the side from which the stage comes.
+bool Loading::is_at_strain(const Box<2>& box, int component, double strain) const {
+  const double now = frame_.strain(component, length(box, component));
+  return strain > strains_at_stage()[component] ? now >= strain : now <= strain;
+}
+
+bool Loading::is_at_stress(std::size_t part, double stress) const {
+  const double now = present_stress(part);
+  if (stress > stress_at_stage_[part]) return now >= stress;
+  return now <= std::max(stress, no_stress * largest_[part]);
+}
+
+bool Loading::is_at_limit(const Box<2>& box) const {
+  const auto at_start = strains_at_stage();
+  const auto limit = limit_of(stage_now(), at_start);
+  if (!limit) return false;
+  const double now = frame_.strain(limit->component, length(box, limit->component));
+  return limit->strain > at_start[limit->component] ? now >= limit->strain : now <= limit->strain;
+}
+
+}  // namespace softgrain
