@@ -101,9 +101,9 @@ double seconds_of_step(const Case& c, const Estimate& e) {
     return e.contacts * sweeps * (c.solver.precision == Precision::single ? 4.1e-9 : 5.5e-9);
   if (is_updated_lagrangian(c)) return e.particles * 1.1e-7;
   const double batches = std::ceil(grains(c) / 8);  // a batch of 8 grains costs the same when it is not full
-  const double flow = !law_choice(c.mpm.law).flows() ? 1
-                      : is_implicit(c)               ? flow_factor_implicit
-                                                     : flow_factor_explicit;
+  const double flow = !law_choice(c.mpm.law).remembers() ? 1
+                      : is_implicit(c)                   ? flow_factor_implicit
+                                                         : flow_factor_explicit;
   return batches * 8 * e.particles / grains(c) * flow *
          (is_implicit(c) ? implicit_seconds_of_point(c) : 5.5e-9);
 }

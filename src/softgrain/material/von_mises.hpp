@@ -130,11 +130,8 @@ struct VonMises {
 
  private:
   static constexpr double root_two_thirds = 0.81649658092772603, root_six = 2.44948974278317810;
-  static constexpr double local_yields = 5;
 
-  double local_bulk() const {
-    return std::min(bulk, std::min(local_yields * rule.yield_stress, 2.0 / 3.0 * mu));
-  }
+  double local_bulk() const { return std::min(bulk, std::min(rule.local_bulk(), 2.0 / 3.0 * mu)); }
 
   template <class T>
   struct PlaneStep {
@@ -192,8 +189,8 @@ struct VonMises {
   [[gnu::always_inline]] PlaneStep<T> flow(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
     PlaneStep<T> step{.trial = trial(F, state), .flow = {}, .share = {}, .dW = {}, .ddW = {}, .stored = {}};
     flow_back(step, state[3], dt);
-    // W' = mu share; W'' = mu dshare/du
-    const T u = max(step.trial.square(), T(1e-300));
+    // W' = mu share; W'' = mu dshare/du, which is round-off over u where u is next to nothing
+    const T u = max(step.trial.square(), T(1e-20));
     step.dW = mu * step.share;
     step.ddW = (0.5 * mu) * (1.0 - step.share - 3.0 * mu * step.flow.slope) / u;
     return step;
@@ -205,7 +202,7 @@ struct VonMises {
     const SpaceTrial<T>& trial = step.trial;
     // dtau/de = bulk 1 (x) 1 + 2 mu (share dev + turn n (x) n), n = e'/|e'|
     const T turn = 1.0 - step.share - 3.0 * mu * step.flow.slope;
-    const T inverse = 1.0 / max(trial.square(), T(1e-300));
+    const T inverse = 1.0 / max(trial.square(), T(1e-20));
     Mat<3, T> D;
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)

@@ -95,9 +95,11 @@ void visit_history(SoftGrains& grains, StateVisitor& visit) {
   for (const GrainBatch& batch : grains.batches)
     for (const Wide& number : batch.history)
       for (int lane = 0; lane < Wide::size; ++lane) values.push_back(number[lane]);
-  visit.rows({"history", "", Owner::point, Role::state,
-              "C_p^-1 (11, 22, 12) and the plastic strain of each point of eight grains"},
-             values, Wide::size);
+  visit.rows(
+      {"history", "", Owner::point, Role::state,
+       "of each point of eight grains C_p^-1 (11, 22, 12) and the plastic strain; of what relaxes U of "
+       "C = U^T U and C_v^-1 of four branches (11, 22, 12 each)"},
+      values, Wide::size);
   const double* value = values.data();
   for (GrainBatch& batch : grains.batches)
     for (Wide& number : batch.history) {
