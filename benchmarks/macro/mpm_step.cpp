@@ -49,7 +49,7 @@ struct Packing {
 template <class Dynamics>
 SoftStepReport compact(Dynamics& dynamics, const Packing& packing, double dt, double phi, int& steps) {
   SoftStepReport sum;
-  while (packing.area / (packing.side * dynamics.walls[1].point[1]) < phi) {
+  while (packing.area / (packing.side * dynamics.box.walls[1].point[1]) < phi) {
     const SoftStepReport report = dynamics.step(dt);
     ++steps;
     sum.iterations += report.iterations;
@@ -100,7 +100,7 @@ void measure_parts(Results& results, const std::string& name, ImplicitDynamics& 
     }
   });
   WideVectors kept;
-  OutlineState state{.position = {}, .start = {}, .walls = dynamics.walls, .dt = implicit_dt};
+  OutlineState state{.position = {}, .start = {}, .walls = dynamics.box.walls, .dt = implicit_dt};
   grains.gather_outline(state.position);
   state.start = state.position;
   OutlineNeighbours neighbours;

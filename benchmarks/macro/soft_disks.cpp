@@ -55,7 +55,7 @@ ImplicitDynamics loose_box(ReferenceGrid grid) {
 }
 
 double packing_fraction(const ImplicitDynamics& dynamics) {
-  const std::vector<Wall<2>>& walls = dynamics.walls;
+  const std::vector<Wall<2>>& walls = dynamics.box.walls;
   double area = 0;
   for (int g = 0; g < disks; ++g) {
     const double radius = dynamics.grains.radius(g);

@@ -132,5 +132,5 @@ TEST_CASE("a step that fails is divided, given up far below the explicit one, an
   CHECK(message.find("of the explicit step") != std::string::npos);
   dynamics.grains.gather_outline(after);
   CHECK(after == before);
-  CHECK(dynamics.walls[1].point[1] == -0.6e-3);
+  CHECK(dynamics.box.walls[1].point[1] == -0.6e-3);
 }

@@ -20,9 +20,9 @@ struct Metal {
   double speed = 0.2, dt = 1e-5;
 };
 
-class Press {
+class PressedMetal {
  public:
-  explicit Press(const Metal& metal) : metal_(metal), dynamics_(made_of(metal)) {}
+  explicit PressedMetal(const Metal& metal) : metal_(metal), dynamics_(made_of(metal)) {}
 
   /// Until the centre has come so near to the plates, in R; F/(sigma_y R) there.
   double force_at(double approach) {
@@ -37,14 +37,14 @@ class Press {
   double recovery() {
     const double turn = approach_, slow = 0.2, dt = metal_.dt;
     double before = 0, now = force();
-    dynamics_.walls[1].velocity[1] *= -slow;
+    dynamics_.box.walls[1].velocity[1] *= -slow;
     while (now > 1e-2) {
       before = now;
       dynamics_.step(dt);
       approach_ -= slow * metal_.speed * dt / (2 * R);
       now = force();
     }
-    dynamics_.walls[1].velocity[1] /= -slow;
+    dynamics_.box.walls[1].velocity[1] /= -slow;
     return turn - approach_ + now / (before - now) * slow * metal_.speed * dt / (2 * R);
   }
   const ImplicitDynamics& dynamics() const { return dynamics_; }
@@ -76,7 +76,7 @@ class Press {
 // References: finite elements of a quarter disk by an independent program, on five meshes and with two kinds
 // of elements, good to 1 % (docs/decisions/0038).
 TEST_CASE("a metal grain between plates follows the finite elements, and springs back as little") {
-  Press press({});
+  PressedMetal press({});
   const std::vector<std::pair<double, double>> reference{{0.05, 1.003}, {0.1, 1.197}};
   for (const auto& [approach, force] : reference) {
     CAPTURE(approach);
@@ -91,12 +91,12 @@ TEST_CASE("a metal grain between plates follows the finite elements, and springs
 
 TEST_CASE(
     "a metal grain does not lock: 16 cells within 5 % at d/R = 0.2, E/sigma_y = 1000, 8 cells within 8 %") {
-  CHECK(Press({.young = 1000}).force_at(0.2) == doctest::Approx(1.602).epsilon(0.05));
-  CHECK(Press({.young = 1000, .cells = 8}).force_at(0.2) == doctest::Approx(1.602).epsilon(0.08));
+  CHECK(PressedMetal({.young = 1000}).force_at(0.2) == doctest::Approx(1.602).epsilon(0.05));
+  CHECK(PressedMetal({.young = 1000, .cells = 8}).force_at(0.2) == doctest::Approx(1.602).epsilon(0.08));
 }
 
 TEST_CASE("a metal grain that hardens carries more, as the finite elements say") {
-  Press press({.young = 1000, .hardening = 10, .cells = 8});
+  PressedMetal press({.young = 1000, .hardening = 10, .cells = 8});
   CHECK(press.force_at(0.1) == doctest::Approx(2.446).epsilon(0.05));
   CHECK(press.force_at(0.2) == doctest::Approx(5.060).epsilon(0.05));
 }

@@ -86,13 +86,13 @@ Compaction compact(const Options& options, double dt, double last, double mark) 
     for (int g = 0; g < dynamics.grains.size(); ++g)
       now +=
           polygon_area(std::span(x).subspan(dynamics.grains.outline_begin(g), shape->grid.outline_nodes()));
-    return now / (sample.width * dynamics.walls[1].point[1]);
+    return now / (sample.width * dynamics.box.walls[1].point[1]);
   };
   const int steps = static_cast<int>(sample.width * (1 - std::exp(-last)) / (speed * dt));
   for (int k = 1; k <= steps; ++k) {
     const SoftStepReport report = dynamics.step(dt);
     result.rejected += report.rejected;
-    const double strain = std::log(sample.width / dynamics.walls[1].point[1]);
+    const double strain = std::log(sample.width / dynamics.box.walls[1].point[1]);
     if (std::abs(strain - mark) < 0.02) {
       impulse += dynamics.wall_impulse(1)[1] - dynamics.wall_impulse(0)[1];
       duration += dt;
@@ -141,7 +141,7 @@ TEST_CASE("a box of grains is compacted at 1 mm/s with every step converged, at 
   const double dt = 0.01 * 0.7e-3 / 1e-3;
   int steps = 0;
   double largest = 0;
-  for (; std::log(sample.width / dynamics.walls[1].point[1]) < 0.15; ++steps) {
+  for (; std::log(sample.width / dynamics.box.walls[1].point[1]) < 0.15; ++steps) {
     const SoftStepReport report = dynamics.step(dt);
     REQUIRE(report.converged);
     REQUIRE(report.residual < 1e-4);

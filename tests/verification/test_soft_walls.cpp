@@ -193,7 +193,7 @@ TEST_CASE("without friction contact gives no energy to a packing") {
   ImplicitDynamics dynamics({std::move(placed), make_law(MaterialLaw::neo_hookean, E, nu), density},
                             test::box_walls(sample.width, speed), {});
   double least = 0;
-  while (dynamics.walls[1].point[1] > sample.width * std::exp(-strain)) {
+  while (dynamics.box.walls[1].point[1] > sample.width * std::exp(-strain)) {
     dynamics.step(dt);
     least = std::min(least, dynamics.work.contacts);
   }

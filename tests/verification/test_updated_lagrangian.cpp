@@ -99,8 +99,8 @@ double first_force(const Choice& choice, double offset, double wall_reach = -1) 
       make_law(MaterialLaw::neo_hookean, E, nu), rho,
       {.shape = choice.shape, .contact_on = choice.contact_on, .cell = cell, .wall_reach = wall_reach});
   while (dynamics.step(dt).contacts == 0)
-    if (dynamics.walls[0].point[1] < top) break;
-  return (dynamics.walls[0].point[1] - top) / cell;
+    if (dynamics.box.walls[0].point[1] < top) break;
+  return (dynamics.box.walls[0].point[1] - top) / cell;
 }
 
 /// Least and largest over ten places of the grain on the lattice.

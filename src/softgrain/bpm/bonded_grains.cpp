@@ -58,6 +58,7 @@ BondedGrains::BondedGrains(BondedGrainsSetup setup)
 StepReport BondedGrains::step(Box<2>& box, double dt) {
   for (std::size_t w = 0; w < box.walls.size(); ++w)
     set_wall_velocity(dynamics_.particles, static_cast<int>(w), box.walls[w].velocity);
+  dynamics_.particles.presses = box.presses;
   if (keeps_problem_) velocity_start_ = dynamics_.particles.velocity;
   dynamics_.options.solver.max_sweeps = most_sweeps_ * (impulse_time_ == 0 ? first_step_factor : 1);
   StepReport report = dynamics_.step(
@@ -69,9 +70,10 @@ StepReport BondedGrains::step(Box<2>& box, double dt) {
   report.residual_limit = dynamics_.options.solver.worst_factor * dynamics_.options.solver.tolerance;
   impulse_time_ = dt;
   for (std::size_t w = 0; w < box.walls.size(); ++w) {
-    box.walls[w].point = dynamics_.particles.walls[w].point;
+    box.walls[w] = dynamics_.particles.walls[w];
     box.impulse[w] = dynamics_.wall_impulse(static_cast<int>(w));
   }
+  box.presses = dynamics_.particles.presses;
   add_work();
   return report;
 }
@@ -230,6 +232,11 @@ WallBody BondedGrains::wall_body(const Box<2>& box, double) const {
   // mass of a sixteenth of a full box; waves of a material as stiff as its bonds, ten times sigma_I
   const double wave_speed = std::sqrt(10 * sigma_I_ / density_), height = box.height();
   return {.mass = density_ * height / 16, .damper = density_ * wave_speed, .patience = height / wave_speed};
+}
+
+/// Grains as stiff as their bonds, ten times sigma_I.
+PressBody BondedGrains::press_body(const Box<2>& box, int axis, double dt) const {
+  return critically_damped(density_, std::sqrt(10 * sigma_I_ / density_), box.length(axis), dt);
 }
 
 void BondedGrains::catch_problem() { keeps_problem_ = true; }

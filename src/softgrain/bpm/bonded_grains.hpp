@@ -54,6 +54,7 @@ class BondedGrains final : public Model {
   std::pair<double, double> reach() const override;
   std::vector<GrainView> grains() const override;
   WallBody wall_body(const Box<2>& box, double dt) const override;
+  PressBody press_body(const Box<2>& box, int axis, double dt) const override;
   void catch_problem() override;
   SolvedContactProblem caught_problem(double dt) override;
 

@@ -61,7 +61,7 @@ PlacedModel lattice_grain_of(const Case& c) {
   double reach = 0;  // the outline is symmetric about both axes
   for (const Vec<2>& x : grain.outline) reach = std::max(reach, x[1]);
   Box<2> box = walls_at(-reach, reach);
-  UpdatedLagrangianDynamics dynamics({std::move(grain)}, box.walls, law_of(c), c.grain.density,
+  UpdatedLagrangianDynamics dynamics({std::move(grain)}, box, law_of(c), c.grain.density,
                                      {.shape = c.mpm.shape_functions,
                                       .contact_on = c.mpm.contact_on,
                                       .cell = cell,
@@ -78,7 +78,7 @@ PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
                                 .damping = c.mpm.damping};
-  ImplicitDynamics dynamics(std::move(grains), box.walls, options);
+  ImplicitDynamics dynamics(std::move(grains), box, options);
   return {std::make_unique<ElasticGrains<ImplicitDynamics>>(std::move(dynamics)), std::move(box), dt};
 }
 
@@ -88,7 +88,7 @@ PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box) {
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
                                 .damping = c.mpm.damping};
-  ExplicitDynamics dynamics(std::move(grains), box.walls, options);
+  ExplicitDynamics dynamics(std::move(grains), box, options);
   return {std::make_unique<ElasticGrains<ExplicitDynamics>>(std::move(dynamics)), std::move(box), dt};
 }
 

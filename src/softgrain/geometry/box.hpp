@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <vector>
 
 #include "softgrain/geometry/press.hpp"
@@ -24,6 +25,7 @@ struct Box {
   std::vector<Press> presses;        ///< that move some of the walls; no wall belongs to two
 
   Box() = default;
+  Box(std::initializer_list<Wall<Dim>> all) : Box(std::vector<Wall<Dim>>(all)) {}
   Box(std::vector<Wall<Dim>> all) : walls(std::move(all)), impulse(walls.size()) {}
 
   /// True if walls face each other along the axis.
@@ -62,6 +64,18 @@ struct Box {
       if (const double L = period[static_cast<std::size_t>(axis)]; L > 0)
         d[axis] -= L * std::round(d[axis] / L);
     return d;
+  }
+
+  /// The speed of a press by the velocities of its walls [m/s].
+  double speed_of(const Press& press) const {
+    for (std::size_t w = 0; w < walls.size(); ++w)
+      if (press.share[w] != 0) return dot(walls[w].velocity, walls[w].normal) / press.share[w];
+    return 0;
+  }
+  /// Gives the walls of a press the velocities that belong to its speed v [m/s].
+  void set_speed(const Press& press, double v) {
+    for (std::size_t w = 0; w < walls.size(); ++w)
+      if (press.share[w] != 0) walls[w].velocity = (press.share[w] * v) * walls[w].normal;
   }
 
   /// What presses a wall outwards in the last step [N s/m in 2D].

@@ -1,5 +1,4 @@
 #pragma once
-#include <algorithm>
 #include <array>
 
 namespace softgrain {
@@ -12,19 +11,23 @@ namespace softgrain {
 ///   v+ = (m v + dt F - sum_w share_w p_w)/(m + dt Z), cut to |v+| <= v_most.
 /// Lengths, forces and masses in 2D, per metre of depth.
 struct Press {
-  std::array<double, 4> share{};  ///< by BoxWall; 0: the wall does not belong to it
+  std::array<double, 6> share{};  ///< by BoxWall; 0: the wall does not belong to it
   double force = 0;               ///< F [N/m]
   double mass = 0;                ///< m [kg/m]
   double damper = 0;              ///< Z [N s/m^2]
   double most = 0;                ///< v_most [m/s]
   double speed = 0;               ///< v [m/s], > 0: the walls come together
+  double mean_force = 0;          ///< sum_w share_w f_w, its mean over tau [N/m]
+  double waiting = 0;             ///< t for which that has been on the same side of F [s]
 
+  /// tau = 2 m/Z [s]
+  double time() const { return 2 * mass / damper; }
   /// d v+/d(-impulse) [m/kg]
-  double mobility(double dt) const { return 1 / (mass + dt * damper); }
-  /// v+ under this impulse sum_w share_w p_w [N s/m]; v is that of the start of the step.
-  double speed_under(double impulse, double dt) const {
-    return std::clamp((mass * speed + dt * force - impulse) * mobility(dt), -most, most);
-  }
+  double mobility(double dt) const;
+  /// v+ without impulses, not cut [m/s]; v is that of the start of the step.
+  double free_speed(double dt) const { return (mass * speed + dt * force) * mobility(dt); }
+  /// A step of dt [s] is over, with v+ [m/s] and sum_w share_w p_w [N s/m].
+  void end_step(double v, double impulse, double dt);
 };
 
 }  // namespace softgrain

@@ -7,6 +7,7 @@
 
 #include "softgrain/geometry/polygon.hpp"
 #include "softgrain/math/tensor.hpp"
+#include "softgrain/model/box_loan.hpp"
 #include "softgrain/model/grain_contacts.hpp"
 #include "softgrain/model/work_budget.hpp"
 
@@ -22,13 +23,9 @@ std::vector<Vec<4>> components(std::span<const Mat<2>> tensors) {
 }  // namespace
 
 StepReport LatticeGrains::step(Box<2>& box, double dt) {
-  dynamics_.walls = box.walls;
+  const BoxLoan loan(box, dynamics_.box);
   const SoftStepReport soft = dynamics_.step(dt);
   impulse_time_ = dt;
-  for (std::size_t w = 0; w < box.walls.size(); ++w) {
-    box.walls[w].point = dynamics_.walls[w].point;
-    box.impulse[w] = dynamics_.wall_impulse(static_cast<int>(w));
-  }
   return {.contacts = soft.contacts,
           .sweeps = soft.sweeps,
           .residual_mean = soft.residual_mean,

@@ -29,11 +29,11 @@ Result with_elastic(const AnyLaw& law, Visit&& visit) {
 }  // namespace
 
 UpdatedLagrangianDynamics::UpdatedLagrangianDynamics(std::vector<PointGrain> point_grains,
-                                                     std::vector<Wall<2>> box_walls, AnyLaw material,
+                                                     Box<2> box_of_grains, AnyLaw material,
                                                      double mass_density,
                                                      const UpdatedLagrangianOptions& lagrangian_options)
     : grains(std::move(point_grains)),
-      walls(std::move(box_walls)),
+      box(std::move(box_of_grains)),
       law(material),
       density(mass_density),
       options(lagrangian_options),
@@ -54,13 +54,12 @@ UpdatedLagrangianDynamics::UpdatedLagrangianDynamics(std::vector<PointGrain> poi
     smallest_radius_ = std::min(smallest_radius_, grain.radius);
   }
   stencil_.resize(grains.size());
-  wall_impulse_.resize(walls.size());
 }
 
 SoftStepReport UpdatedLagrangianDynamics::step(double dt) {
-  check_wall_motion(walls, dt, smallest_radius_);
-  damping_ = {options.damping, dt, walls};
-  for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
+  check_wall_motion(box.walls, dt, smallest_radius_);
+  damping_ = {options.damping, dt, box.walls};
+  for (Wall<2>& wall : box.walls) wall.point += dt * wall.velocity;
   work.internal += kinetic_energy_of_points();
   find_stencils();
   gather_momentum();  // m_i v_i = sum_p N_i m_p v_p
@@ -218,9 +217,9 @@ void UpdatedLagrangianDynamics::find_contacts(LatticeContacts& system, double dt
     outline_.first_vertex.push_back(static_cast<int>(outline_.weights.size()));
   }
   if (options.contact_on == ContactOn::outline)
-    add_outline_contacts(grains, lattice_, outline_, walls, dt, system);
+    add_outline_contacts(grains, lattice_, outline_, box.walls, dt, system);
   else
-    add_node_contacts(lattice_, static_cast<int>(grains.size()), walls, least_node_share * full_cell,
+    add_node_contacts(lattice_, static_cast<int>(grains.size()), box.walls, least_node_share * full_cell,
                       options.wall_reach * options.cell, system);
 }
 
@@ -258,17 +257,17 @@ SoftStepReport UpdatedLagrangianDynamics::report_of(const SolverReport& solved) 
                         .residual = solved.residual_max,
                         .residual_mean = solved.residual_mean,
                         .converged = solved.converged};
-  std::fill(wall_impulse_.begin(), wall_impulse_.end(), Vec<2>{});
+  box.impulse.assign(box.walls.size(), {});
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const LatticeContact& contact = contacts[c];
     if (!(impulse[c][0] > 0)) continue;
     ++report.contacts;
     if (contact.wall < 0) continue;
-    wall_impulse_[contact.wall] -=
+    box.impulse[contact.wall] -=
         impulse[c][0] * contact.normal + impulse[c][1] * perpendicular(contact.normal);
     if (contact.vertex >= 0) {
       const Vec<2>& x = grains[contact.grain].outline[contact.vertex];
-      const double depth = std::max(0.0, -dot(x - walls[contact.wall].point, contact.normal));
+      const double depth = std::max(0.0, -dot(x - box.walls[contact.wall].point, contact.normal));
       report.overlap_max = std::max(report.overlap_max, depth / smallest_radius_);
       report.overlap_mean += depth / smallest_radius_;
     }

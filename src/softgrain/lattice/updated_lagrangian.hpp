@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "softgrain/contact/solver_options.hpp"
+#include "softgrain/geometry/box.hpp"
 #include "softgrain/geometry/wall.hpp"
 #include "softgrain/geometry/wall_motion.hpp"
 #include "softgrain/lattice/contact_on.hpp"
@@ -36,21 +37,21 @@ struct UpdatedLagrangianOptions {
 class UpdatedLagrangianDynamics {
  public:
   /// Raises UsageError if there is no grain, or an option is out of range.
-  UpdatedLagrangianDynamics(std::vector<PointGrain> point_grains, std::vector<Wall<2>> box_walls,
-                            AnyLaw material, double mass_density,
-                            const UpdatedLagrangianOptions& lagrangian_options);
+  UpdatedLagrangianDynamics(std::vector<PointGrain> point_grains, Box<2> box_of_grains, AnyLaw material,
+                            double mass_density, const UpdatedLagrangianOptions& lagrangian_options);
 
   /// One step of dt, which must be stable (stable_time_step below). Raises NumericalError, naming the grain,
   /// if a point is inverted or the outline has left the points, and as check_wall_motion.
   SoftStepReport step(double dt);
 
-  const Vec<2>& wall_impulse(int wall) const { return wall_impulse_[wall]; }  ///< on the wall [N s/m]
-  double elastic_energy() const;                                              ///< sum_p V_p psi(F_p) [J/m]
+  /// Impulse of the grains on a wall in the last step [N s/m].
+  const Vec<2>& wall_impulse(int wall) const { return box.impulse[wall]; }
+  double elastic_energy() const;  ///< sum_p V_p psi(F_p) [J/m]
   /// Cauchy stress of a point [Pa], tension positive.
   Mat<2> stress(int grain, int point) const;
 
   std::vector<PointGrain> grains;
-  std::vector<Wall<2>> walls;
+  Box<2> box;  ///< a model lends its own for a step
   AnyLaw law;
   double density = 0;  ///< rho [kg/m^3]
   UpdatedLagrangianOptions options;
@@ -79,7 +80,6 @@ class UpdatedLagrangianDynamics {
   std::vector<std::vector<Stencil>> stencil_;             // (grains) (points)
   std::vector<Vec<2>> impulse_on_node_;                   // dt f_i [N s/m]
   std::vector<Vec<2>> start_velocity_, kicked_velocity_;  // v_i before and after the kick [m/s]
-  std::vector<Vec<2>> wall_impulse_;
   MassDamping damping_;
 };
 

@@ -1,5 +1,7 @@
 #include "softgrain/model/model.hpp"
 
+#include <algorithm>
+
 #include "softgrain/core/error.hpp"
 
 namespace softgrain {
@@ -9,5 +11,11 @@ void Model::catch_problem() {
 }
 
 SolvedContactProblem Model::caught_problem(double) { return {}; }
+
+PressBody critically_damped(double density, double wave_speed, double length, double dt) {
+  const double stiffness = density * wave_speed * wave_speed / length;
+  const double tau = std::max(length / wave_speed, 2 * dt);
+  return {.mass = stiffness * tau * tau, .damper = 2 * stiffness * tau};
+}
 
 }  // namespace softgrain

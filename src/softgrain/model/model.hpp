@@ -71,6 +71,13 @@ struct PressBody {
   double damper = 0;  ///< [Pa s/m]
 };
 
+/// Of grains that fill a box of length L along the axis of the press, with waves of speed c. Their stiffness
+/// over the area of a wall is k = rho c^2/L, and
+///   m = k tau^2,  Z = 2 k tau,  tau = max(L/c, 2 dt):
+/// the press is damped critically, takes up the waves that come to it, and is slow enough for steps of dt.
+/// Grains that are softer, as a packing is before it jams, damp it more.
+PressBody critically_damped(double density, double wave_speed, double length, double dt);
+
 /// Grains in a box, however they are modelled. A model knows no case, no path, no row and no file.
 class Model {
  public:
@@ -109,8 +116,7 @@ class Model {
   virtual std::vector<GrainView> grains() const = 0;
 
   virtual WallBody wall_body(const Box<2>&, double) const { return {}; }
-  /// Of a press along an axis, so that it is damped critically by grains of this stiffness in steps of dt
-  /// [s], or more where they are softer.
+  /// Of a press along an axis, in steps of dt [s].
   virtual PressBody press_body(const Box<2>&, int /*axis*/, double /*dt*/) const { return {}; }
 
   /// Keeps the contact problem of the next step, with its impulses per metre of depth; where a step solves

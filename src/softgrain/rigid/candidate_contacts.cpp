@@ -105,12 +105,18 @@ Sequence in_fours(const std::vector<BodyPair>& waiting, int n) {
 
 /// A block as it will be swept.
 struct ListedBlock {
-  Sequence frictionless, frictional;
+  Sequence frictionless, frictional, pressed;
 };
 
 /// Pairs among the particles of `range`, and walls n, n + 1, ...
-ListedBlock listed(const std::vector<BodyPair>& pairs, const FrictionRule& rule, const GrainRange& range,
-                   int n) {
+template <int Dim>
+ListedBlock listed(std::vector<BodyPair> pairs, const FrictionRule& rule, const GrainRange& range,
+                   const RigidParticles<Dim>& particles) {
+  const int n = particles.size();
+  const auto pressed = std::stable_partition(
+      pairs.begin(), pairs.end(), [&](const BodyPair& pair) { return particles.press_share(pair.b) == 0; });
+  Sequence alone{.pairs = {pressed, pairs.end()}};
+  pairs.erase(pressed, pairs.end());
   std::vector<int> a, b, order(pairs.size());
   for (const BodyPair& pair : pairs) a.push_back(pair.a - range.begin), b.push_back(pair.b - range.begin);
   const std::vector<int> color = color_contacts(a, b, range.end - range.begin);
@@ -118,7 +124,7 @@ ListedBlock listed(const std::vector<BodyPair>& pairs, const FrictionRule& rule,
   std::stable_sort(order.begin(), order.end(), [&](int c, int d) { return color[c] < color[d]; });
   std::vector<BodyPair> smooth, rough;
   for (const int c : order) (rule(pairs[c].a, pairs[c].b) > 0 ? rough : smooth).push_back(pairs[c]);
-  return {in_fours(smooth, n), in_fours(rough, n)};
+  return {in_fours(smooth, n), in_fours(rough, n), std::move(alone)};
 }
 
 /// Rows `batch` of the arrays of pairs and masses.
@@ -154,7 +160,7 @@ void copy(const RigidContacts<Dim>& old, const ContactBlock& from, int to, Rigid
 /// The block of a list whose contacts start at `begin`.
 ContactBlock at(int begin, ContactBlock block) {
   const int shift = begin - block.begin();
-  for (ContactBatch* batch : {&block.frictionless, &block.frictional})
+  for (ContactBatch* batch : {&block.frictionless, &block.frictional, &block.pressed})
     batch->begin += shift, batch->fours_end += shift, batch->end += shift;
   return block;
 }
@@ -165,6 +171,7 @@ ContactBlock at(int begin, const ListedBlock& listed) {
   ContactBlock block;
   block.frictionless = batch_of(listed.frictionless, begin);
   block.frictional = batch_of(listed.frictional, block.frictionless.end);
+  block.pressed = batch_of(listed.pressed, block.frictional.end);
   return block;
 }
 
@@ -200,13 +207,12 @@ class CarriedImpulses {
 template <int Dim>
 ListedBlock make_list(const RigidParticles<Dim>& particles, const NeighbourReference<Dim>& reference,
                       const FrictionRule& friction, int list) {
-  const int n = particles.size();
   if (list == reference.between_list())
-    return listed(pairs_between(particles, reference), friction, {0, n}, n);
+    return listed(pairs_between(particles, reference), friction, {0, particles.size()}, particles);
   const GrainRange& grain = reference.grains[list];
   const auto inside =
       close_pairs(particles, reference.position, reference.skin, grain, [](int, int) { return false; });
-  return listed(inside, friction, grain, n);
+  return listed(inside, friction, grain, particles);
 }
 
 }  // namespace
@@ -243,6 +249,7 @@ RigidContacts<Dim> candidate_contacts(const RigidParticles<Dim>& particles,
     if (is_kept(block.list)) return copy(old, *before[block.list], block.begin(), contacts);
     write(made[block.list].frictionless, particles, friction, block.frictionless, contacts);
     write(made[block.list].frictional, particles, friction, block.frictional, contacts);
+    write(made[block.list].pressed, particles, friction, block.pressed, contacts);
     const GrainRange bodies =
         block.list == grains ? GrainRange{0, particles.size()} : reference.grains[block.list];
     const CarriedImpulses<Dim> carried(old, before[block.list] ? *before[block.list] : ContactBlock{},

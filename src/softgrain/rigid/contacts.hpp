@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "softgrain/math/vec.hpp"
@@ -14,11 +15,12 @@ struct ContactBatch {
 /// The contacts inside a grain, or those between grains and with walls.
 struct ContactBlock {
   ContactBatch frictionless, frictional;  ///< one after the other
+  ContactBatch pressed;                   ///< then those with walls of presses, which take their turns alone
   int list = 0;                           ///< of NeighbourReference that it was made from
   int made = 0;                           ///< when, as NeighbourReference::made
 
   int begin() const { return frictionless.begin; }
-  int end() const { return frictional.end; }
+  int end() const { return std::max(frictional.end, pressed.end); }
 };
 
 /// Candidate contacts, in the order of the sweep: all pairs that could touch before the next rebuild. Open

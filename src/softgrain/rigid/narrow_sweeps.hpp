@@ -33,6 +33,10 @@ class NarrowSweeps {
   /// One sweep. The violation is counted only if `measured`.
   Violation sweep(bool measured);
 
+  /// As a ContactSystem, for the contacts that no block sweeps (ContactBlock::pressed): u under all impulses
+  /// so far, with `offset` as in start, and what an impulse does.
+  class System;
+
   /// The impulses found, (p_n, p_t) [N s/m], of a block of contacts.
   void read_impulses(const ContactBlock& listed, std::span<Vec<2>> impulse) const;
 
@@ -93,6 +97,24 @@ class NarrowSweeps {
   std::vector<float> spin_;
   int bodies_ = 0;
   float relaxation_ = 1, inertia_ratio_ = 2;
+};
+
+class NarrowSweeps::System {
+ public:
+  /// Keeps references.
+  System(NarrowSweeps& sweeps, const RigidParticles<2>& particles, const RigidContacts<2>& contacts,
+         std::span<const double> offset);
+
+  int size() const { return contacts_.size(); }
+  Mat<2> delassus_block(int contact) const;
+  Vec<2> relative_velocity(int contact) const;
+  void apply_impulse(int contact, const Vec<2>& dp);
+
+ private:
+  NarrowSweeps& sweeps_;
+  const RigidContacts<2>& contacts_;
+  std::span<const double> offset_;
+  double inertia_ratio_;
 };
 
 }  // namespace softgrain

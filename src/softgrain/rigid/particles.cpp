@@ -46,6 +46,21 @@ void set_wall_velocity(RigidParticles<Dim>& particles, int wall, const Vec<Dim>&
 }
 
 template <int Dim>
+void set_press_speed(RigidParticles<Dim>& particles, const Press& press, double v) {
+  for (std::size_t w = 0; w < particles.walls.size(); ++w)
+    if (press.share[w] != 0)
+      set_wall_velocity(particles, static_cast<int>(w), press.share[w] * v * particles.walls[w].normal);
+}
+
+template <int Dim>
+double RigidParticles<Dim>::press_share(int body) const {
+  double share = 0;
+  if (body >= size())
+    for (const Press& press : presses) share += press.share[static_cast<std::size_t>(body - size())];
+  return share;
+}
+
+template <int Dim>
 double kinetic_energy(const RigidParticles<Dim>& particles) {
   double energy = 0;
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
@@ -64,6 +79,10 @@ template void drift<2>(RigidParticles<2>&, double);
 template void drift<3>(RigidParticles<3>&, double);
 template void set_wall_velocity<2>(RigidParticles<2>&, int, const Vec<2>&);
 template void set_wall_velocity<3>(RigidParticles<3>&, int, const Vec<3>&);
+template void set_press_speed<2>(RigidParticles<2>&, const Press&, double);
+template void set_press_speed<3>(RigidParticles<3>&, const Press&, double);
+template double RigidParticles<2>::press_share(int) const;
+template double RigidParticles<3>::press_share(int) const;
 template double kinetic_energy<2>(const RigidParticles<2>&);
 template double kinetic_energy<3>(const RigidParticles<3>&);
 

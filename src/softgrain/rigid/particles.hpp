@@ -2,6 +2,7 @@
 #include <cassert>
 #include <vector>
 
+#include "softgrain/geometry/press.hpp"
 #include "softgrain/geometry/wall.hpp"
 #include "softgrain/math/vec.hpp"
 
@@ -30,9 +31,12 @@ struct RigidParticles {
   std::vector<double> inverse_mass;  ///< (n + walls) [1/kg], 0 for walls
   double inertia_ratio = Dim == 2 ? 2.0 : 2.5;  ///< kappa = m R^2 / I: 2 for disks, 5/2 for spheres
   std::vector<Wall<Dim>> walls;
+  std::vector<Press> presses;  ///< that move some of the walls
 
   int size() const { return static_cast<int>(position.size()); }
   int wall_body(int wall) const { return size() + wall; }
+  /// Share of a body in the press that moves it; 0 for particles and other walls.
+  double press_share(int body) const;
 };
 
 /// Particles at rest with the masses given. Raises UsageError for radii or masses that are not positive.
@@ -43,6 +47,10 @@ RigidParticles<Dim> rigid_particles(std::vector<Vec<Dim>> position, std::vector<
 /// x += dt v, for particles and walls.
 template <int Dim>
 void drift(RigidParticles<Dim>& particles, double dt);
+
+/// Gives the walls of a press the velocities that belong to its speed v [m/s].
+template <int Dim>
+void set_press_speed(RigidParticles<Dim>& particles, const Press& press, double v);
 
 /// Gives a wall another velocity [m/s].
 template <int Dim>

@@ -52,6 +52,7 @@ void RigidDynamics<Dim>::temper_restitution(double dt) {
     particles.spin[i] += s * (s_e[i] - particles.spin[i]);
   }
   for (int c = 0; c < contacts.size(); ++c) contacts.impulse[c] += s * (p_e[c] - contacts.impulse[c]);
+  move_presses(dt);
   account_work(dt);
 }
 

@@ -137,6 +137,7 @@ Violation RigidContactSystem<Dim>::sweep(std::span<Vec<Dim>> impulse, std::span<
                  [&](int k) { found[k] = sweep_block(k, impulse, friction, options.relaxation); });
   Violation violation;
   for (const Violation& of_block : found) violation += of_block;
+  if (pushed_) pushed_->sweep<Dim>(*this, impulse, friction, options.relaxation, violation);
   return violation;
 }
 

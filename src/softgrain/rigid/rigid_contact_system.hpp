@@ -4,6 +4,7 @@
 
 #include "softgrain/contact/contact_system.hpp"
 #include "softgrain/contact/law.hpp"
+#include "softgrain/contact/pushed_bodies.hpp"
 #include "softgrain/contact/solver_options.hpp"
 #include "softgrain/rigid/activation.hpp"
 #include "softgrain/rigid/contacts.hpp"
@@ -65,6 +66,8 @@ class RigidContactSystem {
   /// plane; the same law as the plain sweep, and the same bits on any number of threads.
   Violation sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
                   const SolverOptions& options);
+  /// Sweeps then move these bodies too. Keeps a reference.
+  void push(PushedBodies& bodies) { pushed_ = &bodies; }
 
  private:
   /// One contact of the sweep, for those that do not fill four lanes, and for spheres.
@@ -77,6 +80,7 @@ class RigidContactSystem {
   RigidParticles<Dim>& particles_;
   const RigidContacts<Dim>& contacts_;
   std::span<const double> offset_;
+  PushedBodies* pushed_ = nullptr;
 };
 
 }  // namespace softgrain

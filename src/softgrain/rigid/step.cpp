@@ -33,6 +33,8 @@ RigidDynamics<Dim>::RigidDynamics(RigidParticles<Dim> bodies, FrictionRule frict
 
 template <int Dim>
 StepReport RigidDynamics<Dim>::step(const ForceField<Dim>& field, double dt) {
+  list_pressed_walls();
+  for (const Press& press : particles.presses) set_press_speed(particles, press, press.speed);
   drift(particles, dt / 2);  // x_m = x + dt/2 v
   if (renew_stale_lists(reference, particles)) rebuild_contacts();
   kick(field, dt);  // v_free = v + dt M^-1 F(x_m)
@@ -42,6 +44,7 @@ StepReport RigidDynamics<Dim>::step(const ForceField<Dim>& field, double dt) {
   if (options.law.restitution > 0 && work.contact > 0 && friction_work() > 0) temper_restitution(dt);
   drift(particles, dt / 2);  // x = x_m + dt/2 v+
   if (options.law.push_out > 0 && options.law.activation != Activation::anticipated) push_out(dt);
+  end_step_of_presses(dt);
   return report(solver);
 }
 
@@ -50,6 +53,55 @@ void RigidDynamics<Dim>::rebuild_contacts() {
   RigidContacts<Dim> made =
       candidate_contacts(particles, reference, friction_, contacts, std::move(replaced_));
   replaced_ = std::exchange(contacts, std::move(made));
+}
+
+/// Their contacts are listed apart, so that the list is made again when other walls are pressed.
+template <int Dim>
+void RigidDynamics<Dim>::list_pressed_walls() {
+  std::vector<bool> pressed;
+  for (int w = 0; w < static_cast<int>(particles.walls.size()); ++w)
+    pressed.push_back(particles.press_share(particles.wall_body(w)) != 0);
+  const bool changed = std::ranges::find(pressed, true) != pressed.end() || !pressed_.empty();
+  if (!changed || pressed == pressed_) return;
+  pressed_ = std::move(pressed);
+  if (reference.made.empty()) return;
+  reference.made.back() = ++reference.generation;
+  rebuild_contacts();
+}
+
+/// The presses under the impulses that their contacts carry now.
+template <int Dim>
+PushedBodies RigidDynamics<Dim>::pressed_walls(double dt) const {
+  PushedBodies pushed;
+  if (particles.presses.empty()) return pushed;
+  for (const Press& press : particles.presses)
+    pushed.bodies.push_back({.free = press.free_speed(dt),
+                             .mobility = press.mobility(dt),
+                             .most = press.most,
+                             .assumed = press.speed});
+  const ContactBatch& listed = contacts.blocks.back().pressed;
+  for (int c = listed.begin; c < listed.end; ++c) {
+    const std::size_t wall = contacts.body_b[c] - particles.size();
+    for (std::size_t k = 0; k < particles.presses.size(); ++k)
+      if (const double share = particles.presses[k].share[wall]; share != 0)
+        pushed.add({.contact = c, .body = static_cast<int>(k), .share = share}, contacts.impulse[c][0],
+                   contacts.size());
+  }
+  return pushed;
+}
+
+template <int Dim>
+void RigidDynamics<Dim>::move_presses(double dt) {
+  const PushedBodies pushed = pressed_walls(dt);
+  for (std::size_t k = 0; k < particles.presses.size(); ++k)
+    set_press_speed(particles, particles.presses[k], pushed.bodies[k].velocity());
+}
+
+template <int Dim>
+void RigidDynamics<Dim>::end_step_of_presses(double dt) {
+  const PushedBodies pushed = pressed_walls(dt);
+  for (std::size_t k = 0; k < particles.presses.size(); ++k)
+    particles.presses[k].end_step(pushed.bodies[k].velocity(), pushed.bodies[k].push, dt);
 }
 
 /// Keeps the velocities of the start.
@@ -109,12 +161,16 @@ SolverReport RigidDynamics<Dim>::solve(double dt) {
   const int blocks = static_cast<int>(contacts.blocks.size());
   offset_.resize(contacts.size());
   overlaps_.resize(blocks);
+  for (const Press& press : particles.presses) set_press_speed(particles, press, press.speed);
   RigidContactSystem<Dim> system(particles, contacts, offset_);
   if (Dim == 2 && options.precision == Precision::single)
     return solve_in_single_precision(system, solver, dt);
   parallel_ranges(contacts.size(), [&](int begin, int end) { prepare(begin, end, dt); });
+  PushedBodies pressed = pressed_walls(dt);
+  system.push(pressed);
   system.apply_impulses(contacts.impulse);
   const SolverReport report = solve_nlgs<Dim>(system, contacts.impulse, contacts.friction, solver);
+  move_presses(dt);
   parallel_for(blocks, [&](int k) { overlaps_[k] = overlaps_of(contacts.blocks[k]); });
   return report;
 }
@@ -127,30 +183,39 @@ SolverReport RigidDynamics<Dim>::solve_in_single_precision(RigidContactSystem<Di
     narrow_.start(
         particles, contacts, [&](int begin, int end) { prepare(begin, end, dt); }, offset_,
         solver.relaxation);
-    report =
-        repeat_sweeps([&](bool measured) { return narrow_.sweep(measured); }, solver.velocity_scale, solver);
+    NarrowSweeps::System pressed_system(narrow_, particles, contacts, offset_);
+    PushedBodies pressed = pressed_walls(dt);
+    for (const Pushing& of : pressed.contacts)
+      pressed_system.apply_impulse(of.contact, contacts.impulse[of.contact]);
+    const auto sweep = [&](bool measured) {
+      Violation violation = narrow_.sweep(measured);
+      pressed.sweep<2>(pressed_system, contacts.impulse, contacts.friction, solver.relaxation, violation);
+      return violation;
+    };
+    report = repeat_sweeps(sweep, solver.velocity_scale, solver);
     for_each_block(static_cast<int>(contacts.blocks.size()), [&](int k) {
       narrow_.read_impulses(contacts.blocks[k], contacts.impulse);
       system.apply_impulses(k, contacts.impulse);
       overlaps_[k] = overlaps_of(contacts.blocks[k]);
     });
+    move_presses(dt);
   }
   return report;
 }
 
-/// With v_m = (v + v+)/2: m/2 (v+^2 - v^2) = v_m . (dt F + H p); a wall's share is p against its own
-/// velocity.
+/// With v_m = (v + v+)/2, also of a wall: m/2 (v+^2 - v^2) = v_m . (dt F + H p); a wall's share is p against
+/// its own velocity.
 template <int Dim>
 void RigidDynamics<Dim>::account_work(double dt) {
+  const auto middle = [&](int body) { return 0.5 * (velocity_start_[body] + particles.velocity[body]); };
   // by the forces, and by all
   const auto sum = parallel_sum<Vec<2>>(particles.size(), [&](int begin, int end) {
     Vec<2> part;
     for (int i = begin; i < end; ++i) {
-      const Vec<Dim> middle = 0.5 * (velocity_start_[i] + particles.velocity[i]);
       const Spin<Dim> spin_middle = 0.5 * (spin_start_[i] + particles.spin[i]);
-      part[0] += dt * dot(force_[i], middle);
+      part[0] += dt * dot(force_[i], middle(i));
       part[1] += particles.mass[i] *
-                 (dot(middle, particles.velocity[i] - velocity_start_[i]) +
+                 (dot(middle(i), particles.velocity[i] - velocity_start_[i]) +
                   dot(spin_middle, particles.spin[i] - spin_start_[i]) / particles.inertia_ratio);
     }
     return part;
@@ -159,7 +224,7 @@ void RigidDynamics<Dim>::account_work(double dt) {
   work = {.force = sum[0]};
   add_up_wall_impulses();
   for (std::size_t w = 0; w < particles.walls.size(); ++w)
-    work.wall -= dot(wall_impulse_[w], particles.walls[w].velocity);
+    work.wall -= dot(wall_impulse_[w], middle(particles.wall_body(static_cast<int>(w))));
   work.contact = sum[1] - work.force - work.wall;
   account_contacts();
 }

@@ -76,6 +76,10 @@ class RigidDynamics {
  private:
   void kick(const ForceField<Dim>& field, double dt);
   void prepare(int begin, int end, double dt);
+  void list_pressed_walls();
+  PushedBodies pressed_walls(double dt) const;
+  void move_presses(double dt);
+  void end_step_of_presses(double dt);
   SolverReport solve(double dt);
   SolverReport solve_in_single_precision(RigidContactSystem<Dim>& system, const SolverOptions& solver,
                                          double dt);
@@ -99,6 +103,7 @@ class RigidDynamics {
   RigidContacts<Dim> replaced_;  // its memory serves the next list
   NarrowSweeps narrow_;
   std::vector<Overlaps> overlaps_;  // of each block
+  std::vector<bool> pressed_;       // (walls) those of presses when the list of contacts was made
   double mean_radius_ = 0;
 };
 

@@ -185,10 +185,12 @@ Violation ElasticContacts::sweep(std::span<Vec<2>> impulse, std::span<const doub
                                  const SolverOptions& options) {
   violation_.assign(violation_.size(), {});
   for_each_in_order([&](int c, int group) {
+    if (pushed_ && pushed_->has(c)) return;
     nlgs_update<2>(*this, c, impulse[c], friction[c], options.relaxation, violation_[group]);
   });
   Violation sum;
   for (const Violation& of_group : violation_) sum += of_group;
+  if (pushed_) pushed_->sweep<2>(*this, impulse, friction, options.relaxation, sum);
   return sum;
 }
 

@@ -6,6 +6,7 @@
 
 #include "softgrain/contact/contact_levels.hpp"
 #include "softgrain/contact/contact_system.hpp"
+#include "softgrain/contact/pushed_bodies.hpp"
 #include "softgrain/contact/residual.hpp"
 #include "softgrain/contact/solver_options.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
@@ -53,6 +54,8 @@ class ElasticContacts {
   void apply_impulses(std::span<const Vec<2>> impulse);
   /// One sweep of NLGS, on all threads: every second group of contacts, then the others (ContactLevels).
   Violation sweep(std::span<Vec<2>> impulse, std::span<const double> friction, const SolverOptions& options);
+  /// Sweeps then move these bodies too. Keeps a reference.
+  void push(PushedBodies& bodies) { pushed_ = &bodies; }
 
  private:
   /// A grain's vertices in contact: vertex_[first .. first + count - 1]. Their velocities are `width`
@@ -96,6 +99,7 @@ class ElasticContacts {
   std::size_t tangential_ = 0;
   ContactLevels levels_;
   std::vector<Violation> violation_;  // (groups)
+  PushedBodies* pushed_ = nullptr;
 };
 
 /// Force on each outline vertex from the contacts' impulses over dt [N/m].

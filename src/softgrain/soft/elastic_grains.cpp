@@ -8,6 +8,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
+#include "softgrain/model/box_loan.hpp"
 #include "softgrain/soft/history.hpp"
 
 namespace softgrain {
@@ -45,16 +46,12 @@ void visit_stable_step(StableStep& stable, StateVisitor& visit) {
 
 template <class Dynamics>
 StepReport ElasticGrains<Dynamics>::step(Box<2>& box, double dt) {
-  dynamics_.walls = box.walls;
+  const BoxLoan loan(box, dynamics_.box);
   const SoftStepReport soft = dynamics_.step(dt);
   if constexpr (std::is_same_v<Dynamics, ExplicitDynamics>)
     if (const int grain = dynamics_.grains.runaway_grain(dynamics_.impulse_time); grain >= 0)
       throw NumericalError(fmt::format(
           "grain {} moves by more than half its radius in a step; use a smaller time step", grain));
-  for (std::size_t w = 0; w < box.walls.size(); ++w) {
-    box.walls[w].point = dynamics_.walls[w].point;
-    box.impulse[w] = dynamics_.wall_impulse(static_cast<int>(w));
-  }
   ++sums_.steps;
   sums_.iterations += soft.iterations;
   sums_.rejected += soft.rejected;
@@ -138,6 +135,11 @@ WallBody ElasticGrains<Dynamics>::wall_body(const Box<2>& box, double dt) const 
 }
 
 template <class Dynamics>
+PressBody ElasticGrains<Dynamics>::press_body(const Box<2>& box, int axis, double dt) const {
+  return critically_damped(density(), wave_speed(dynamics_.grains.law, density()), box.length(axis), dt);
+}
+
+template <class Dynamics>
 void ElasticGrains<Dynamics>::catch_problem() {
   if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>)
     dynamics_.caught.emplace();
@@ -156,8 +158,7 @@ SolvedContactProblem ElasticGrains<Dynamics>::caught_problem(double dt) {
 template <class Dynamics>
 void ElasticGrains<Dynamics>::visit(StateVisitor& visit) {
   visit_nodes(dynamics_.grains, visit);
-  visit_contacts(dynamics_.grains, static_cast<int>(dynamics_.walls.size()), dynamics_.contacts,
-                 dynamics_.impulse, visit);
+  visit_contacts(dynamics_.grains, walls_, dynamics_.contacts, dynamics_.impulse, visit);
   visit({"impulse_time", "s", Owner::run, Role::start, "the sub-step over which impulses acted"},
         dynamics_.impulse_time);
   visit_work(dynamics_.work, visit);

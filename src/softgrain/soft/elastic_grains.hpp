@@ -15,7 +15,9 @@ namespace softgrain {
 template <class Dynamics>
 class ElasticGrains final : public Model {
  public:
-  explicit ElasticGrains(Dynamics dynamics) : dynamics_(std::move(dynamics)) {}
+  /// Grains among as many walls as the dynamics were given.
+  explicit ElasticGrains(Dynamics dynamics)
+      : dynamics_(std::move(dynamics)), walls_(static_cast<int>(dynamics_.box.walls.size())) {}
 
   std::unique_ptr<Model> copy() const override { return std::make_unique<ElasticGrains>(*this); }
   StepReport step(Box<2>& box, double dt) override;
@@ -35,6 +37,7 @@ class ElasticGrains final : public Model {
   std::pair<double, double> reach() const override;
   std::vector<GrainView> grains() const override { return grain_views(dynamics_.grains); }
   WallBody wall_body(const Box<2>& box, double dt) const override;
+  PressBody press_body(const Box<2>& box, int axis, double dt) const override;
   void catch_problem() override;
   SolvedContactProblem caught_problem(double dt) override;
 
@@ -48,6 +51,7 @@ class ElasticGrains final : public Model {
   SoftView view() const;
 
   Dynamics dynamics_;
+  int walls_;
   Sums sums_;
 };
 

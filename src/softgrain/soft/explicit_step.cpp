@@ -8,6 +8,7 @@
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/soft/contact_work.hpp"
 #include "softgrain/soft/equilibrium.hpp"
+#include "softgrain/soft/pressed_walls.hpp"
 #include "softgrain/soft/wall_couple.hpp"
 
 namespace softgrain {
@@ -35,9 +36,9 @@ Vec<2> lane_of(const Vec<2, Wide>& v, int lane) { return {v[0][lane], v[1][lane]
 
 }  // namespace
 
-ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> box_walls,
+ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains,
                                    const ExplicitOptions& explicit_options)
-    : grains(std::move(soft_grains)), walls(std::move(box_walls)), options(explicit_options) {
+    : grains(std::move(soft_grains)), box(std::move(box_of_grains)), options(explicit_options) {
   require(grains.size() > 0, "there is no grain");
   require(options.damping >= 0, "damping must be >= 0, got {} 1/s", options.damping);
   require(options.friction >= 0 && options.wall_friction >= 0, "friction must be >= 0, got {} and {}",
@@ -59,7 +60,7 @@ ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
 
 SoftStepReport ExplicitDynamics::step(double dt) {
   SoftStepReport report{.converged = true};
-  wall_impulse_.assign(walls.size(), {});
+  box.impulse.assign(box.walls.size(), {});
   double rest = dt;
   while (rest > 0) {
     if (stable.until_look == 0) look_at_cells(rest);
@@ -93,13 +94,14 @@ void ExplicitDynamics::look_at_cells(double dt) {
 }
 
 void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
-  check_wall_motion(walls, dt, smallest_radius_);
-  damping_ = {options.damping, dt, walls};
+  for (const Press& press : box.presses) box.set_speed(press, press.speed);
+  check_wall_motion(box.walls, dt, smallest_radius_);
+  damping_ = {options.damping, dt, box.walls};
   take_back_spin();
   // contacts where x + dt v will be
   fly_outline(dt);
-  for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
-  outline_.walls = walls;
+  for (Wall<2>& wall : box.walls) wall.point += dt * wall.velocity;
+  outline_.walls = box.walls;
   outline_.dt = dt;
   std::vector<OutlineContact> found = neighbours_.detect(grains, outline_, contact_margin);
   impulse = carried_impulses(grains, contacts, impulse, found);
@@ -108,6 +110,8 @@ void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
   contacts = std::move(found);
 
   LumpedContacts system(contacts, outline_, outline_velocity_, inverse_mass_, lumped_scratch_);
+  PushedBodies pressed = pressed_walls(box, contacts, impulse, dt);
+  system.push(pressed);
   kick(dt);
   std::vector<double> friction;
   for (const OutlineContact& c : contacts)
@@ -117,6 +121,8 @@ void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
   solver.velocity_scale = mean_radius_ / dt;
   const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction, solver);
   impulse_time = dt;
+  move_presses(box, pressed, dt);
+  outline_.walls = box.walls;
   drift_outline(dt);
   if (has_history(grains.law)) add_flow();
   add_contact_work(dt);
@@ -266,7 +272,14 @@ void ExplicitDynamics::add_overlaps(SoftStepReport& report) const {
 void ExplicitDynamics::add_contact_work(double dt) {
   for (std::size_t v = 0; v < outline_velocity_.size(); ++v)  // moved by (v+ + v)/2 dt
     outline_.position[v] = outline_.start[v] + dt / 2 * (outline_velocity_[v] + outline_velocity_start_[v]);
-  softgrain::add_contact_work(contacts, impulse, outline_, work, wall_impulse_);
+  for (const Press& press : box.presses)
+    for (std::size_t w = 0; w < box.walls.size(); ++w)
+      if (press.share[w] != 0)
+        outline_.walls[w].velocity =
+            0.5 * (box.walls[w].velocity + (press.share[w] * press.speed) * box.walls[w].normal);
+  softgrain::add_contact_work(contacts, impulse, outline_, work, box.impulse);
+  outline_.walls = box.walls;
+  end_step_of_presses(box, contacts, impulse, dt);
 }
 
 }  // namespace softgrain

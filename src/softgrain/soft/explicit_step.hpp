@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "softgrain/contact/solver_options.hpp"
+#include "softgrain/geometry/box.hpp"
 #include "softgrain/geometry/wall_motion.hpp"
 #include "softgrain/model/soft_step_report.hpp"
 #include "softgrain/model/work_budget.hpp"
@@ -42,19 +43,19 @@ struct StableStep {
 /// with g(x+) linear about x + dt v: at x itself, sliding along an edge would drive vertices into it.
 class ExplicitDynamics {
  public:
-  ExplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> box_walls,
-                   const ExplicitOptions& explicit_options);
+  ExplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains, const ExplicitOptions& explicit_options);
 
   /// One step of dt, in equal sub-steps of at most longest_stable_step: cells are looked at again every so
   /// many of them, more often while they change. Raises NumericalError if a point is inverted or cells are so
   /// deformed that thousands of sub-steps would be needed, naming the grain, and as check_wall_motion.
   SoftStepReport step(double dt);
 
-  const Vec<2>& wall_impulse(int wall) const { return wall_impulse_[wall]; }
+  /// Impulse of the grains on a wall in the last step [N s/m].
+  const Vec<2>& wall_impulse(int wall) const { return box.impulse[wall]; }
   double mean_radius() const { return mean_radius_; }
 
   SoftGrains grains;
-  std::vector<Wall<2>> walls;
+  Box<2> box;  ///< a model lends its own for a step
   ExplicitOptions options;
   std::vector<OutlineContact> contacts;
   std::vector<Vec<2>> impulse;
@@ -93,7 +94,6 @@ class ExplicitDynamics {
   OutlineState outline_;
   std::vector<Vec<2>> outline_velocity_, outline_velocity_start_;
   std::vector<double> inverse_mass_;  // (outline vertices)
-  std::vector<Vec<2>> wall_impulse_;
   LumpedContacts::Scratch lumped_scratch_;
   std::vector<BatchStep> batch_step_;
   MassDamping damping_;

@@ -31,7 +31,7 @@ void ImplicitDynamics::balance_momentum(double dt) {
   const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
   const double t = step_of_matrix(dt);
   double fastest = 0;
-  for (const Wall<2>& wall : walls) fastest = std::max(fastest, turn_over_walls * norm(wall.velocity));
+  for (const Wall<2>& wall : box.walls) fastest = std::max(fastest, turn_over_walls * norm(wall.velocity));
   std::vector<Wide> given(batches());  // kinetic energy
   parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];
@@ -110,7 +110,7 @@ void ImplicitDynamics::add_work() {
       work.damping += shares[b].damping[lane];
       work.contacts += held_[b].couple[lane] * held_[b].wanted[lane];
     }
-  add_contact_work(contacts, impulse, outline_, work, wall_impulse_);
+  add_contact_work(contacts, impulse, outline_, work, box.impulse);
 }
 
 }  // namespace softgrain

@@ -52,7 +52,7 @@ ImplicitDynamics::Imbalance ImplicitDynamics::correct(bool first, bool same_matr
     matrix_[b].finish_solve(numbers(half_solved_[b]), numbers(kept_[b]), numbers(f));
     hold_correction(b);
   });
-  const double correction = largest_correction_of_grains() / mean_radius_;
+  const double correction = std::max(largest_correction_of_grains(), press_moved_) / mean_radius_;
   if (!quasi_static(outline_.dt)) {
     follow_secant(same_matrix && correction >= options.tolerance);
     return {.correction = correction, .residual = correction};

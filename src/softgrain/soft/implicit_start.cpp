@@ -16,8 +16,9 @@ constexpr double normals_of_fast_steps = 0.65;
 /// x_n for others, whose velocity says how far they fell into their last places, not where they go.
 void ImplicitDynamics::start(double dt) {
   grains.gather_outline(outline_.start);
-  walls_start_ = walls;
-  damping_ = {options.damping, dt, walls};
+  for (const Press& press : box.presses) box.set_speed(press, press.speed);
+  walls_start_ = box.walls;
+  damping_ = {options.damping, dt, box.walls};
   contacts_start_ = contacts;
   impulse_start_ = impulse;
   set_flying(dt);
@@ -37,14 +38,14 @@ void ImplicitDynamics::start(double dt) {
   outline_.normals_at = quasi_static(dt) ? 1 : normals_of_fast_steps;
   if (impulse_time <= 0) find_first_contacts();
   hold_spins(dt);
-  for (Wall<2>& wall : walls) wall.point += dt * wall.velocity;
-  outline_.walls = walls;
+  for (Wall<2>& wall : box.walls) wall.point += dt * wall.velocity;
+  outline_.walls = box.walls;
 }
 
 /// No step has found contacts yet, and hold_spins asks who is near whom.
 void ImplicitDynamics::find_first_contacts() {
   outline_.position = outline_.start;
-  outline_.walls = walls;
+  outline_.walls = box.walls;
   contacts = neighbours_.detect(grains, outline_);
   impulse.assign(contacts.size(), {});
 }
@@ -88,7 +89,7 @@ void ImplicitDynamics::take_back() {
     grains.batches[b].position = start_[b];
     grains.batches[b].velocity = velocity_start_[b];
   }
-  walls = walls_start_;
+  box.walls = walls_start_;
   contacts = contacts_start_;
   impulse = impulse_start_;
 }

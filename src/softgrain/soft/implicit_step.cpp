@@ -8,6 +8,7 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/soft/equilibrium.hpp"
+#include "softgrain/soft/pressed_walls.hpp"
 #include "softgrain/soft/stable_step.hpp"
 
 namespace softgrain {
@@ -38,9 +39,9 @@ constexpr double shortest_step = 1.0 / 64;
 
 }  // namespace
 
-ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> box_walls,
+ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains,
                                    const ImplicitOptions& implicit_options)
-    : grains(std::move(soft_grains)), walls(std::move(box_walls)), options(implicit_options) {
+    : grains(std::move(soft_grains)), box(std::move(box_of_grains)), options(implicit_options) {
   require(grains.size() > 0, "there is no grain");
   require(options.friction >= 0 && options.wall_friction >= 0, "friction must be >= 0, got {} and {}",
           options.friction, options.wall_friction);
@@ -58,13 +59,12 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> 
   }
   for (auto* vectors : {&start_, &velocity_start_, &half_solved_, &force_, &kept_, &correction_, &moved_})
     vectors->resize(grains.batches.size());
-  wall_impulse_.resize(walls.size());
   pace_.resize(grains.batches.size());
 }
 
 SoftStepReport ImplicitDynamics::step(double dt) {
   SoftStepReport report;
-  wall_impulse_.assign(walls.size(), {});
+  box.impulse.assign(box.walls.size(), {});
   if (sub_step <= 0) sub_step = dt;
   slow_ = step_of_matrix(dt) < dt;
   const double shortest = shortest_step * std::min(dt, explicit_step_);
@@ -227,6 +227,8 @@ bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   impulse = carried_impulses(grains, contacts, impulse, found);
   contacts = std::move(found);
   ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt, scratch_);
+  PushedBodies pressed = pressed_walls(box, contacts, impulse, dt);
+  system.push(pressed);
   system.apply_impulses(impulse);
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
@@ -234,6 +236,8 @@ bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   solver.tolerance = (floppy ? floppy_share : contact_share) * options.tolerance;
   const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction_of_contacts(), solver);
   report.sweeps += solved.sweeps;
+  press_moved_ = move_presses(box, pressed, dt);
+  if (press_moved_ > 0) outline_.walls = box.walls;
   return solved.converged;
 }
 
@@ -272,6 +276,7 @@ ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& re
   if (step_of_matrix(dt) < dt) hold_touching();
   balance_momentum(dt);
   add_work();
+  end_step_of_presses(box, contacts, impulse, dt);
   impulse = carried_impulses(grains, contacts, impulse, found_);
   contacts = std::move(found_);
   impulse_time = dt;

@@ -6,6 +6,7 @@
 
 #include "softgrain/contact/contact_problem.hpp"
 #include "softgrain/contact/solver_options.hpp"
+#include "softgrain/geometry/box.hpp"
 #include "softgrain/geometry/wall_motion.hpp"
 #include "softgrain/model/soft_step_report.hpp"
 #include "softgrain/model/work_budget.hpp"
@@ -54,8 +55,7 @@ struct ImplicitOptions {
 /// balance is asked for apart (docs/decisions/0023).
 class ImplicitDynamics {
  public:
-  ImplicitDynamics(SoftGrains soft_grains, std::vector<Wall<2>> box_walls,
-                   const ImplicitOptions& implicit_options);
+  ImplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains, const ImplicitOptions& implicit_options);
 
   /// One step of dt; walls move by dt times their velocity. A sub-step in which Newton's method or NLGS does
   /// not converge, that leaves a contact too deep, moves a grain by more than half its radius, inverts a
@@ -65,11 +65,11 @@ class ImplicitDynamics {
   SoftStepReport step(double dt);
 
   /// Impulse of the grains on a wall in the last step [N s/m].
-  const Vec<2>& wall_impulse(int wall) const { return wall_impulse_[wall]; }
+  const Vec<2>& wall_impulse(int wall) const { return box.impulse[wall]; }
   double mean_radius() const { return mean_radius_; }
 
   SoftGrains grains;
-  std::vector<Wall<2>> walls;
+  Box<2> box;  ///< a model lends its own for a step
   ImplicitOptions options;
   std::vector<OutlineContact> contacts;  ///< at the end of the last step
   std::vector<Vec<2>> impulse;           ///< of `contacts`, (p_n, p_t) [N s/m]
@@ -170,9 +170,9 @@ class ImplicitDynamics {
   std::vector<Vec<2>> outline_increment_;
   OutlineState outline_;
   std::vector<Wall<2>> walls_start_;
+  double press_moved_ = 0;  // of a wall by the present iteration [m]
   std::vector<OutlineContact> contacts_start_, found_;
   std::vector<Vec<2>> impulse_start_;
-  std::vector<Vec<2>> wall_impulse_;
   int failed_grain_ = -1;
   bool slow_ = false;  // the whole step is longer than the one whose inertia A has
   MassDamping damping_;

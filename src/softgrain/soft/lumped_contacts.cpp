@@ -113,12 +113,14 @@ Violation LumpedContacts::sweep(std::span<Vec<2>> impulse, std::span<const doubl
     Violation sum;
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
       const int c = rows_[k].contact;
+      if (pushed_ && pushed_->has(c)) continue;
       solve(rows_[k], impulse[c], friction[c], options, sum);
     }
     of_strip[strip] = sum;
   });
   Violation violation;
   for (const Violation& of_one : of_strip) violation += of_one;
+  if (pushed_) pushed_->sweep<2>(*this, impulse, friction, options.relaxation, violation);
   return violation;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "softgrain/contact/contact_system.hpp"
+#include "softgrain/contact/pushed_bodies.hpp"
 #include "softgrain/contact/residual.hpp"
 #include "softgrain/soft/contact_strips.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
@@ -36,6 +37,8 @@ class LumpedContacts {
   /// contact is solved by
   ///   p_n = max(0, p_n - u_n/W),  p_t = p_t - u_t/W, cut to |p_t| <= mu p_n.
   Violation sweep(std::span<Vec<2>> impulse, std::span<const double> friction, const SolverOptions& options);
+  /// Sweeps then move these bodies too. Keeps a reference.
+  void push(PushedBodies& bodies) { pushed_ = &bodies; }
 
  private:
   // per contact and sweep: reads 160 B in the order of memory, and five velocities
@@ -61,6 +64,7 @@ class LumpedContacts {
   std::vector<Row>& rows_;  // strip by strip
   ContactStrips& strips_;
   std::span<Vec<2>> velocity_;
+  PushedBodies* pushed_ = nullptr;
 };
 
 /// Memory kept from step to step.

@@ -158,7 +158,7 @@ TEST_CASE("a step that is too long for Newton's method is halved, and the walls 
   const SoftStepReport report = dynamics.step(1.2e-3);
   CHECK(report.rejected > 0);
   CHECK(report.converged);
-  CHECK(dynamics.walls[1].point[1] == doctest::Approx(0.84e-3));
+  CHECK(dynamics.box.walls[1].point[1] == doctest::Approx(0.84e-3));
   CHECK(report.overlap_max < 1e-3);
 }
 

@@ -157,7 +157,7 @@ TEST_CASE(
 TEST_CASE(
     "what a metal grain does not give back it has dissipated: the energies close, in both integrators") {
   const auto check = [](auto dynamics, double dt) {
-    const double R = dynamics.grains.radius(0), speed = -dynamics.walls[1].velocity[1];
+    const double R = dynamics.grains.radius(0), speed = -dynamics.box.walls[1].velocity[1];
     for (double travel = 0; travel < 0.3 * R; travel += speed * dt) dynamics.step(dt);
     const double stored = stored_energy(dynamics.grains), walls = dynamics.work.walls;
     CHECK(plastic_strain(dynamics.grains).largest > 0.1);
@@ -197,7 +197,7 @@ TEST_CASE("grains that flow go on from a checkpoint with the same bits, on one t
   const auto check = [](auto dynamics, double dt) {
     using Dynamics = decltype(dynamics);
     ElasticGrains<Dynamics> whole(dynamics), resumed(dynamics);
-    Box<2> box(dynamics.walls), other = box;
+    Box<2> box(dynamics.box.walls), other = box;
     for (int k = 0; k < 30; ++k) whole.step(box, dt);
     StateWriter writer;
     whole.visit(writer);
