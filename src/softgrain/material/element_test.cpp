@@ -97,7 +97,7 @@ std::vector<ElementRow> drive(Point<Law> point, const ElementTest& test) {
   double width = 0, begin = 0;
   for (const double end : turns_of(test)) {
     for (int k = 1; k <= test.steps; ++k) {
-      const double strain = begin + (end - begin) * k / test.steps;
+      const double strain = k == test.steps ? end : begin + (end - begin) * k / test.steps;
       if (is_free) width = free_width(point, strain, width, dt);
       const Mat<2> F_before = F, P_before = P;
       F = deformation(test.path, strain, width);

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/material/dilatation.hpp"
@@ -80,11 +81,8 @@ struct Prony {
   template <class T>
   Mat<2, T> stress(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
     const PlaneTrial<T> whole = elastic(F);
-    Mat<2, T> P = stress_of(whole, respond(whole, bulk, T(lasting()), T(0.0)));
-    for (int k = 0; k < branches; ++k) {
-      const Branch<T> step = branch(F, state, k, dt);
-      P += stress_of(step.trial, respond(step.trial, 0, T(mu * g[at(k)] * step.decay.mean), T(0.0)));
-    }
+    Mat<2, T> P = softgrain::stress_of(whole, respond(whole, bulk, T(lasting()), T(0.0)));
+    for (int k = 0; k < branches; ++k) P += stress_of(branch(F, state, k, dt), k);
     return P;
   }
   /// Algorithmic tangent dP_iJ/dF_kL [Pa] at (i Dim + J, k Dim + L); symmetric.
@@ -106,22 +104,24 @@ struct Prony {
   };
   template <class T>
   Advanced<T> advance(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
-    Advanced<T> after{state, T(0.0)};
-    const T C_11 = F(0, 0) * F(0, 0) + F(1, 0) * F(1, 0), C_12 = F(0, 0) * F(0, 1) + F(1, 0) * F(1, 1);
-    after.state[0] = sqrt(C_11);
-    after.state[1] = determinant(F) / after.state[0];
-    after.state[2] = C_12 / after.state[0];
-    if (!(dt > 0)) return after;
+    Advanced<T> after = moved(F, state);
+    if (dt > 0)
+      for (int k = 0; k < branches; ++k) relax(branch(F, state, k, dt), k, after);
+    return after;
+  }
+  /// stress and advance at once: both begin with the same trial.
+  template <class T>
+  std::pair<Mat<2, T>, Advanced<T>> stress_and_advance(const Mat<2, T>& F, const State<2, T>& state,
+                                                       double dt) const {
+    const PlaneTrial<T> whole = elastic(F);
+    std::pair<Mat<2, T>, Advanced<T>> both{
+        softgrain::stress_of(whole, respond(whole, bulk, T(lasting()), T(0.0))), moved(F, state)};
     for (int k = 0; k < branches; ++k) {
       const Branch<T> step = branch(F, state, k, dt);
-      const Decay& decay = step.decay;
-      const Vec<3, T> G = flowed(step.trial, T(decay.mean));
-      std::copy(G.c.begin(), G.c.end(), &after.state[3 + 3 * at(k)]);
-      after.dissipated +=
-          mu * g[at(k)] *
-          (decay.at_start * step.before + decay.at_end * decay.mean * decay.mean * step.trial.square());
+      both.first += stress_of(step, k);
+      if (dt > 0) relax(step, k, both.second);
     }
-    return after;
+    return both;
   }
   /// Elastic energy [J/m^3] of a point at F with this state, as it is.
   template <class T>
@@ -189,6 +189,30 @@ struct Prony {
       G = flowed(start, T(decay.rest));
     }
     return {decay, before, plane_trial(F, G)};
+  }
+  template <class T>
+  Mat<2, T> stress_of(const Branch<T>& step, int k) const {
+    return softgrain::stress_of(step.trial,
+                                respond(step.trial, 0, T(mu * g[at(k)] * step.decay.mean), T(0.0)));
+  }
+  /// The state with C at the end of a step; the branches follow.
+  template <class T>
+  static Advanced<T> moved(const Mat<2, T>& F, const State<2, T>& state) {
+    Advanced<T> after{state, T(0.0)};
+    const T C_11 = F(0, 0) * F(0, 0) + F(1, 0) * F(1, 0), C_12 = F(0, 0) * F(0, 1) + F(1, 0) * F(1, 1);
+    after.state[0] = sqrt(C_11);
+    after.state[1] = determinant(F) / after.state[0];
+    after.state[2] = C_12 / after.state[0];
+    return after;
+  }
+  template <class T>
+  void relax(const Branch<T>& step, int k, Advanced<T>& after) const {
+    const Decay& decay = step.decay;
+    const Vec<3, T> G = flowed(step.trial, T(decay.mean));
+    std::copy(G.c.begin(), G.c.end(), &after.state[3 + 3 * at(k)]);
+    after.dissipated +=
+        mu * g[at(k)] *
+        (decay.at_start * step.before + decay.at_end * decay.mean * decay.mean * step.trial.square());
   }
 };
 

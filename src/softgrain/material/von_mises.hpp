@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "softgrain/material/dilatation.hpp"
 #include "softgrain/material/flow_rule.hpp"
@@ -63,12 +64,14 @@ struct VonMises {
   };
   template <class T>
   Advanced<2, T> advance(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
+    return advanced(flow(F, state, dt), state);
+  }
+  /// stress and advance at once, for the cost of one: both begin with the same trial.
+  template <class T>
+  std::pair<Mat<2, T>, Advanced<2, T>> stress_and_advance(const Mat<2, T>& F, const State<2, T>& state,
+                                                          double dt) const {
     const PlaneStep<T> step = flow(F, state, dt);
-    const Vec<3, T> G = flowed(step.trial, step.share);
-    const auto flows = step.flow.increment > T(0.0);
-    return {{select(flows, G[0], state[0]), select(flows, G[1], state[1]), select(flows, G[2], state[2]),
-             state[3] + step.flow.increment},
-            step.flow.dissipated};
+    return {stress_of(step.trial, respond(step.trial, bulk, step.dW, step.ddW)), advanced(step, state)};
   }
   /// Elastic energy [J/m^3] of a point at F with this state, as it is.
   template <int Dim, class T>
@@ -141,6 +144,14 @@ struct VonMises {
     T dW, ddW;  ///< of the potential, by u = |e'_trial|^2 [Pa]
     T stored;
   };
+  template <class T>
+  [[gnu::always_inline]] static Advanced<2, T> advanced(const PlaneStep<T>& step, const State<2, T>& state) {
+    const Vec<3, T> G = flowed(step.trial, step.share);
+    const auto flows = step.flow.increment > T(0.0);
+    return {{select(flows, G[0], state[0]), select(flows, G[1], state[1]), select(flows, G[2], state[2]),
+             state[3] + step.flow.increment},
+            step.flow.dissipated};
+  }
   /// In space, of the trial.
   template <class T>
   struct SpaceTrial {

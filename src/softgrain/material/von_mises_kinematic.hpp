@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/material/dilatation.hpp"
@@ -61,12 +62,14 @@ struct VonMisesKinematic {
   };
   template <class T>
   Advanced<T> advance(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
+    return advanced(flow(F, state, dt), state);
+  }
+  /// stress and advance at once: both begin with the same trial.
+  template <class T>
+  std::pair<Mat<2, T>, Advanced<T>> stress_and_advance(const Mat<2, T>& F, const State<2, T>& state,
+                                                       double dt) const {
     const Step<T> step = flow(F, state, dt);
-    const Vec<3, T> G = flowed(step.trial, step.elastic());
-    const auto flows = step.flow.increment > T(0.0);
-    return {{select(flows, G[0], state[0]), select(flows, G[1], state[1]), select(flows, G[2], state[2]),
-             state[3] + step.flow.increment},
-            step.flow.dissipated};
+    return {stress_of(step.trial, respond(step.trial, bulk, derivatives(step))), advanced(step, state)};
   }
   /// Elastic energy [J/m^3] of a point at F with this state, that of the back stress included.
   template <class T>
@@ -105,6 +108,14 @@ struct VonMisesKinematic {
     PlaneDeviator<T> elastic() const { return trial.e + (-1.0 * gamma) * normal; }
   };
 
+  template <class T>
+  static Advanced<T> advanced(const Step<T>& step, const State<2, T>& state) {
+    const Vec<3, T> G = flowed(step.trial, step.elastic());
+    const auto flows = step.flow.increment > T(0.0);
+    return {{select(flows, G[0], state[0]), select(flows, G[1], state[1]), select(flows, G[2], state[2]),
+             state[3] + step.flow.increment},
+            step.flow.dissipated};
+  }
   /// e_p = ln sqrt(C_p) = -ln sqrt(C_p^-1).
   template <class T>
   static PlaneDeviator<T> plastic(const State<2, T>& state) {

@@ -74,7 +74,7 @@ TEST_CASE("perfect plasticity in plane strain ends at two over root three times 
   CHECK(end.stress_zz == doctest::Approx(end.stress_xx / 2).epsilon(1e-3));
   CHECK(end.plastic_strain == doctest::Approx(2 / std::sqrt(3.0) * 0.2).epsilon(1e-2));
   CHECK(end.dissipated == doctest::Approx(0.002 * end.plastic_strain).epsilon(1e-10));
-  check_balance(rows, 1e-3);
+  check_balance(rows, 3e-3);
 }
 
 TEST_CASE("a point that creeps comes to Norton's stress for the rate at which it is sheared") {
