@@ -89,7 +89,7 @@ TEST_CASE("a point that creeps comes to Norton's stress for the rate at which it
   }
 }
 
-TEST_CASE("a cycle goes there, back and there again; metal is left with stress, rubber without") {
+TEST_CASE("a cycle goes there, back and there again: metal is left with stress, rubber without") {
   const auto metal = drive(MaterialLaw::von_mises, ElementPath::cycle, -0.2, 1, 50);
   REQUIRE(metal.size() == 151);
   CHECK(metal[50].strain == -0.2);
