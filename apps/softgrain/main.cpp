@@ -80,6 +80,7 @@ void add_verbs(CLI::App& app) {
   add_python_verb(app, "paraview");
   add_info_verb(app);
   add_solve_verb(app);
+  add_law_verb(app);
   add_schema_verb(app);
   add_doctor_verb(app);
   add_bench_verb(app);

@@ -47,6 +47,7 @@ void add_report_verb(CLI::App& app);
 void add_export_verb(CLI::App& app);
 void add_info_verb(CLI::App& app);
 void add_solve_verb(CLI::App& app);
+void add_law_verb(CLI::App& app);
 void add_completion_verb(CLI::App& app);
 
 }  // namespace softgrain

@@ -24,7 +24,13 @@ inline GrainPlacement placed(std::shared_ptr<const Topology> shape, double radiu
 
 /// Of any law: what flows does so at a stress far beyond the modulus.
 inline MaterialParameters parameters(double E, double nu) {
-  return {.young_modulus = E, .poisson_ratio = nu, .yield_stress = 100 * E};
+  return {.young_modulus = E,
+          .poisson_ratio = nu,
+          .yield_stress = 100 * E,
+          .creep_rate = 1,
+          .creep_stress = 100 * E,
+          .relaxation_share_1 = 0.4,
+          .relaxation_time_1 = 1};
 }
 
 inline Wall<2> floor_at(double y) { return {.point = {0, y}, .normal = {0, 1}, .velocity = {}}; }

@@ -6,8 +6,7 @@ namespace softgrain {
 namespace {
 
 template <class Law>
-constexpr bool is_whole = (SplitLaw<Law, 2> && ElasticLaw<Law, 3>) ||
-                          (SplitHistoryLaw<Law, 2> && HistoryLaw<Law, 3>);
+constexpr bool is_whole = (SplitLaw<Law, 2> && ElasticLaw<Law, 3>) || SplitHistoryLaw<Law, 2>;
 
 template <class... Laws>
 constexpr bool all_whole(const std::variant<Laws...>*) {

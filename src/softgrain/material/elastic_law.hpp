@@ -70,6 +70,7 @@ concept HistoryLaw = RemembersIn<L, Dim, double> && RemembersIn<L, Dim, Wide> &&
 template <class L, int Dim>
 concept SplitHistoryLaw = HistoryLaw<L, Dim> && requires(const L& law, const Mat<Dim>& F, double J) {
   { law.deviatoric() } -> HistoryLaw<Dim>;
+  law.stress_and_advance(F, L::template undeformed<Dim, double>(), 0.0);  // a pair of what both say
   { law.volume().energy(J) } -> std::same_as<double>;
   { law.volume().derivative(J) } -> std::same_as<double>;
   { law.volume().second_derivative(J) } -> std::same_as<double>;

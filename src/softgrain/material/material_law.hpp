@@ -15,6 +15,10 @@ enum class MaterialLaw {
   st_venant_kirchhoff,
   yeoh,
   von_mises,
+  mooney_rivlin,
+  ogden,
+  norton,
+  prony,
 };
 
 /// The numbers that laws are made from, in SI. Each law takes those that its LawChoice names.
@@ -28,6 +32,17 @@ struct MaterialParameters {
   double saturation_stress = 0;  ///< Q of Voce's hardening [Pa]
   double saturation_rate = 0;    ///< and its b [-]
   double viscosity = 0;          ///< eta of Perzyna's flow [Pa s]
+  double kinematic_modulus = 0;  ///< H_k [Pa]
+  double c01 = 0;                ///< Mooney and Rivlin's second coefficient [Pa]
+  double ogden_exponent_1 = 2, ogden_exponent_2 = 4, ogden_exponent_3 = -2;  ///< alpha_p [-]
+  double ogden_share_2 = 0, ogden_share_3 = 0;  ///< of the shear modulus; the first term has the rest
+  double creep_rate = 0;                        ///< A of Norton's creep [1/s]
+  double creep_stress = 0;                      ///< sigma_0 [Pa]
+  double creep_exponent = 1;                    ///< n [-]
+  double relaxation_share_1 = 0, relaxation_share_2 = 0;  ///< g_i of Prony's series [-]
+  double relaxation_share_3 = 0, relaxation_share_4 = 0;
+  double relaxation_time_1 = 0, relaxation_time_2 = 0;  ///< tau_i [s]
+  double relaxation_time_3 = 0, relaxation_time_4 = 0;
 };
 
 /// One of them, as case files know it: keys mpm.NAME and kind.law.NAME.
@@ -63,6 +78,43 @@ inline constexpr std::array material_parameters{
     MaterialParameter{
         &MaterialParameters::viscosity, "viscosity", "Pa s", 0, unbounded, true,
         "stress beyond the yield stress over the rate of plastic strain; 0: the rate does not matter"},
+    MaterialParameter{
+        &MaterialParameters::kinematic_modulus, "kinematic_modulus", "MPa", 0, unbounded, true,
+        "rise H_k of the back stress per plastic strain; 0: the material hardens alike both ways"},
+    MaterialParameter{&MaterialParameters::c01, "c01", "MPa", 0, unbounded, true,
+                      "coefficient C_01 of (I_2 - 3); C_10 is E/(4 (1 + nu)) - C_01"},
+    MaterialParameter{&MaterialParameters::ogden_exponent_1, "ogden_exponent_1", "", -20, 20, true,
+                      "exponent alpha_1 of Ogden's term 1"},
+    MaterialParameter{&MaterialParameters::ogden_exponent_2, "ogden_exponent_2", "", -20, 20, true,
+                      "exponent alpha_2 of Ogden's term 2"},
+    MaterialParameter{&MaterialParameters::ogden_exponent_3, "ogden_exponent_3", "", -20, 20, true,
+                      "exponent alpha_3 of Ogden's term 3"},
+    MaterialParameter{&MaterialParameters::ogden_share_2, "ogden_share_2", "", 0, 1, true,
+                      "share of Ogden's term 2 in the shear modulus; the first term has the rest"},
+    MaterialParameter{&MaterialParameters::ogden_share_3, "ogden_share_3", "", 0, 1, true,
+                      "share of Ogden's term 3 in the shear modulus; the first term has the rest"},
+    MaterialParameter{&MaterialParameters::creep_rate, "creep_rate", "1/s", 0, unbounded, true,
+                      "rate of plastic strain at the von Mises stress creep_stress; what creeps needs one"},
+    MaterialParameter{&MaterialParameters::creep_stress, "creep_stress", "MPa", 0, unbounded, true,
+                      "von Mises stress at which the material creeps with creep_rate; what creeps needs one"},
+    MaterialParameter{&MaterialParameters::creep_exponent, "creep_exponent", "", 1, 100, true,
+                      "n: the rate of creep grows as the stress to the power of n; 1: a Maxwell fluid"},
+    MaterialParameter{&MaterialParameters::relaxation_share_1, "relaxation_share_1", "", 0, 1, true,
+                      "share of the shear modulus that relaxes with relaxation_time_1"},
+    MaterialParameter{&MaterialParameters::relaxation_time_1, "relaxation_time_1", "s", 0, unbounded, true,
+                      "time in which the stress of that share falls to 1/e at rest"},
+    MaterialParameter{&MaterialParameters::relaxation_share_2, "relaxation_share_2", "", 0, 1, true,
+                      "share of the shear modulus that relaxes with relaxation_time_2"},
+    MaterialParameter{&MaterialParameters::relaxation_time_2, "relaxation_time_2", "s", 0, unbounded, true,
+                      "time in which the stress of that share falls to 1/e at rest"},
+    MaterialParameter{&MaterialParameters::relaxation_share_3, "relaxation_share_3", "", 0, 1, true,
+                      "share of the shear modulus that relaxes with relaxation_time_3"},
+    MaterialParameter{&MaterialParameters::relaxation_time_3, "relaxation_time_3", "s", 0, unbounded, true,
+                      "time in which the stress of that share falls to 1/e at rest"},
+    MaterialParameter{&MaterialParameters::relaxation_share_4, "relaxation_share_4", "", 0, 1, true,
+                      "share of the shear modulus that relaxes with relaxation_time_4"},
+    MaterialParameter{&MaterialParameters::relaxation_time_4, "relaxation_time_4", "s", 0, unbounded, true,
+                      "time in which the stress of that share falls to 1/e at rest"},
 };
 
 }  // namespace softgrain

@@ -14,6 +14,28 @@ struct InvariantResponse {
 template <class T>
 using PlaneResponse = InvariantResponse<2, T>;
 
+/// An energy of plane strain [J/m^3] and its derivatives by s = I/(2 J) = cosh(e_1 - e_2) and L = ln J, e_a
+/// the logarithmic principal strains.
+template <class T>
+struct StretchEnergy {
+  T value{}, by_s{}, by_L{}, by_ss{}, by_sL{}, by_LL{};
+};
+
+/// The same by I and J.
+template <class T>
+PlaneResponse<T> response_of(const Mat<2, T>& F, const T& s, const StretchEnergy<T>& psi) {
+  const T inverse_J = 1.0 / determinant(F), s_I = 0.5 * inverse_J;
+  const T first = psi.by_L - s * psi.by_s;  // by L at I, as s falls with L as -s
+  const T second = psi.by_LL - 2.0 * s * psi.by_sL + s * (psi.by_s + s * psi.by_ss);
+  return {.F = F,
+          .energy = psi.value,
+          .d_I = psi.by_s * s_I,
+          .d_J = first * inverse_J,
+          .d_II = psi.by_ss * s_I * s_I,
+          .d_IJ = (psi.by_sL - s * psi.by_ss - psi.by_s) * s_I * inverse_J,
+          .d_JJ = (second - first) * inverse_J * inverse_J};
+}
+
 /// P = 2 psi_I F + psi_J cof F.
 template <int Dim, class T>
 Mat<Dim, T> stress_of(const InvariantResponse<Dim, T>& psi) {

@@ -58,6 +58,24 @@ void differentiate(PrincipalResponse<T>& psi, const Vec<3, T>& e, const T& shear
   }
 }
 
+/// The same from any tau_a, D_ab, and slope_ab = (tau_a - tau_b)/(e_a - e_b), a < b, known without dividing
+/// by zero.
+template <class T>
+void differentiate(PrincipalResponse<T>& psi, const Vec<3, T>& tau, const Mat<3, T>& D,
+                   const Mat<3, T>& slope) {
+  const Vec<3, T>& s = psi.frame.stretch;
+  for (int a = 0; a < 3; ++a) {
+    psi.first[a] = tau[a] / s[a];
+    psi.second(a, a) = (D(a, a) - tau[a]) / (s[a] * s[a]);
+    for (int b = a + 1; b < 3; ++b) {
+      const T product = 1.0 / (s[a] * s[b]), sum = s[a] + s[b], q = (s[a] - s[b]) / sum;
+      psi.second(a, b) = psi.second(b, a) = D(a, b) * product;
+      // (e_a - e_b)/(s_a - s_b) = 2 phi(q^2)/sum
+      psi.quotient(a, b) = (s[b] * slope(a, b) * (2.0 * log_ratio(q * q).value / sum) - tau[b]) * product;
+    }
+  }
+}
+
 /// P = sum_a psi_a u_a (x) v_a.
 template <class T>
 Mat<3, T> stress_of(const PrincipalResponse<T>& psi) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "softgrain/material/dilatation.hpp"
 #include "softgrain/material/flow_rule.hpp"
@@ -63,12 +64,14 @@ struct VonMises {
   };
   template <class T>
   Advanced<2, T> advance(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
+    return advanced(flow(F, state, dt), state);
+  }
+  /// stress and advance at once, for the cost of one: both begin with the same trial.
+  template <class T>
+  std::pair<Mat<2, T>, Advanced<2, T>> stress_and_advance(const Mat<2, T>& F, const State<2, T>& state,
+                                                          double dt) const {
     const PlaneStep<T> step = flow(F, state, dt);
-    const Vec<3, T> G = flowed(step.trial, step.share);
-    const auto flows = step.flow.increment > T(0.0);
-    return {{select(flows, G[0], state[0]), select(flows, G[1], state[1]), select(flows, G[2], state[2]),
-             state[3] + step.flow.increment},
-            step.flow.dissipated};
+    return {stress_of(step.trial, respond(step.trial, bulk, step.dW, step.ddW)), advanced(step, state)};
   }
   /// Elastic energy [J/m^3] of a point at F with this state, as it is.
   template <int Dim, class T>
@@ -130,11 +133,8 @@ struct VonMises {
 
  private:
   static constexpr double root_two_thirds = 0.81649658092772603, root_six = 2.44948974278317810;
-  static constexpr double local_yields = 5;
 
-  double local_bulk() const {
-    return std::min(bulk, std::min(local_yields * rule.yield_stress, 2.0 / 3.0 * mu));
-  }
+  double local_bulk() const { return std::min(bulk, std::min(rule.local_bulk(), 2.0 / 3.0 * mu)); }
 
   template <class T>
   struct PlaneStep {
@@ -144,6 +144,14 @@ struct VonMises {
     T dW, ddW;  ///< of the potential, by u = |e'_trial|^2 [Pa]
     T stored;
   };
+  template <class T>
+  [[gnu::always_inline]] static Advanced<2, T> advanced(const PlaneStep<T>& step, const State<2, T>& state) {
+    const Vec<3, T> G = flowed(step.trial, step.share);
+    const auto flows = step.flow.increment > T(0.0);
+    return {{select(flows, G[0], state[0]), select(flows, G[1], state[1]), select(flows, G[2], state[2]),
+             state[3] + step.flow.increment},
+            step.flow.dissipated};
+  }
   /// In space, of the trial.
   template <class T>
   struct SpaceTrial {
@@ -192,8 +200,8 @@ struct VonMises {
   [[gnu::always_inline]] PlaneStep<T> flow(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
     PlaneStep<T> step{.trial = trial(F, state), .flow = {}, .share = {}, .dW = {}, .ddW = {}, .stored = {}};
     flow_back(step, state[3], dt);
-    // W' = mu share; W'' = mu dshare/du
-    const T u = max(step.trial.square(), T(1e-300));
+    // W' = mu share; W'' = mu dshare/du, which is round-off over u where u is next to nothing
+    const T u = max(step.trial.square(), T(1e-20));
     step.dW = mu * step.share;
     step.ddW = (0.5 * mu) * (1.0 - step.share - 3.0 * mu * step.flow.slope) / u;
     return step;
@@ -205,7 +213,7 @@ struct VonMises {
     const SpaceTrial<T>& trial = step.trial;
     // dtau/de = bulk 1 (x) 1 + 2 mu (share dev + turn n (x) n), n = e'/|e'|
     const T turn = 1.0 - step.share - 3.0 * mu * step.flow.slope;
-    const T inverse = 1.0 / max(trial.square(), T(1e-300));
+    const T inverse = 1.0 / max(trial.square(), T(1e-20));
     Mat<3, T> D;
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)

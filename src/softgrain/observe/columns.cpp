@@ -106,7 +106,7 @@ constexpr std::array table{
     Column{"dissipation_integration", "J/m", elastic,
         "by backward Euler, less what free grains get back with their spin; by the explicit step, which damps the mesh's own vibrations (53a); updated Lagrangian: also what is lost between points and nodes",
         NUMBER("dissipation_integration")},
-    Column{"dissipation_plastic", "J/m", elastic, "by flow of the material, hardening included, since the start; laws that flow only (46)", NUMBER("dissipation_plastic")},
+    Column{"dissipation_plastic", "J/m", elastic, "by flow, creep and relaxation of the material, hardening included, since the start; laws that do so only (46), (46d)", NUMBER("dissipation_plastic")},
     Column{"plastic_strain", "", elastic, R"(mean over the area of the equivalent plastic strain $\alpha$ (45); laws that flow only)", NUMBER("plastic_strain")},
     Column{"plastic_strain_max", "", elastic, "the largest of all points", NUMBER("plastic_strain_max")},
     Column{"yielding", "", elastic, "share of the undeformed area that flowed in the last step", NUMBER("yielding")},

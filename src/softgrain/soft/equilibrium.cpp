@@ -58,15 +58,15 @@ class CellForce {
   std::array<Vec<2, Wide>, 4> node_;
 };
 
-/// P = dpsi_dev/dF + U'(mean theta) dtheta/dF at each point.
-template <class Law>
-[[gnu::flatten]] CellForce cell_force(const LawAtPoints<Law>& at, const CellState& state,
-                                      InvertedLanes& inverted) {
-  const auto theta = at.law.dilatation();
-  const Wide pressure = at.law.volume().derivative(state.mean(theta));
+/// P = dpsi_dev/dF + U'(mean theta) dtheta/dF at each point; deviatoric(p) is the first part.
+template <class Law, class Deviatoric>
+[[gnu::flatten]] CellForce cell_force(const Law& law, const CellState& state, InvertedLanes& inverted,
+                                      const Deviatoric& deviatoric) {
+  const auto theta = law.dilatation();
+  const Wide pressure = law.volume().derivative(state.mean(theta));
   const auto stress = [&](int p) {
     inverted.note(determinant(state.F[p]));
-    return at.stress(state, p) + pressure * theta.gradient(state.F[p]);
+    return deviatoric(p) + pressure * theta.gradient(state.F[p]);
   };
   CellForce force(stress(0), state.points[0]);
   for (int p = 1; p < 4; ++p) force.add(stress(p), state.points[p]);
@@ -78,7 +78,7 @@ unsigned add_forces(const Law& law, const GrainBatch& batch, double dt, WideVect
   InvertedLanes inverted;
   const LawAtPoints<Law> at(law, batch, dt);
   for_each_cell(law, batch, [&](const CellState& state) {
-    CellForce of_cell = cell_force(at, state, inverted);
+    CellForce of_cell = cell_force(law, state, inverted, [&](int p) { return at.stress(state, p); });
     if (!Law::objective) of_cell.turn(placed_rotation(batch));
     of_cell.add_to(force, state.cell, batch.radius);
   });
@@ -99,6 +99,27 @@ template <HasCofactorFactors Law>
     const Wide mean_J = cell.mean_J(shape, inverse_square_radius);
     cell.add_force(shape, law.mu, law.cofactor_factors(J, mean_J), nodes, force);
   }
+  return inverted.lanes();
+}
+
+template <class Law>
+requires HistoryLaw<Law, 2>
+[[gnu::flatten]] unsigned add_forces_and_advance(const Law& law, GrainBatch& batch, double dt,
+                                                 WideVectors& force, FlowOfStep& flow) {
+  static_assert(Law::objective);
+  InvertedLanes inverted;
+  HistoryOfStep<Law> step(batch);
+  const LawAtPoints<Law> at(law, batch, dt);
+  for_each_cell(law, batch, [&](const CellState& state) {
+    const auto deviatoric = [&](int p) {
+      const auto before = at.history(state, p);
+      const auto [P, advanced] = law.deviatoric().stress_and_advance(state.F[p], before, dt);
+      step.keep(state, p, before, advanced);
+      return P;
+    };
+    cell_force(law, state, inverted, deviatoric).add_to(force, state.cell, batch.radius);
+  });
+  flow = step.sum();
   return inverted.lanes();
 }
 
@@ -169,6 +190,19 @@ template <class Law>
 unsigned internal_force(const SoftGrains& grains, const GrainBatch& batch, WideVectors& force, double dt) {
   force.assign(batch.position.size(), {});
   return std::visit([&](const auto& law) { return add_forces(law, batch, dt, force); }, grains.law);
+}
+
+unsigned internal_force_and_history(const SoftGrains& grains, GrainBatch& batch, WideVectors& force,
+                                    double dt, FlowOfStep& flow) {
+  force.assign(batch.position.size(), {});
+  return std::visit(
+      [&]<class Law>(const Law& law) {
+        if constexpr (HistoryLaw<Law, 2>)
+          return add_forces_and_advance(law, batch, dt, force, flow);
+        else
+          return add_forces(law, batch, dt, force);
+      },
+      grains.law);
 }
 
 void for_each_cell_stiffness(const SoftGrains& grains, const GrainBatch& batch, double dt,

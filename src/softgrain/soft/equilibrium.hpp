@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "softgrain/math/block_cholesky.hpp"
+#include "softgrain/soft/history.hpp"
 #include "softgrain/soft/soft_grains.hpp"
 
 namespace softgrain {
@@ -14,6 +15,11 @@ namespace softgrain {
 /// Returns the lanes in which some point has det F <= 0, whatever the law: bit l; their force is void. A law
 /// with history goes on from the grains' history over dt [s]; 0: as it stands, what takes time has none.
 unsigned internal_force(const SoftGrains& grains, const GrainBatch& batch, WideVectors& force, double dt = 0);
+
+/// The same in one pass with advance_history, at the same positions: both begin with the same trial. Where a
+/// point is inverted the history is void too.
+unsigned internal_force_and_history(const SoftGrains& grains, GrainBatch& batch, WideVectors& force,
+                                    double dt, FlowOfStep& flow);
 
 /// The ten blocks K_ab, b <= a, of a cell, from a = 0 on; a block is row by row [Pa].
 using CellStiffness = std::array<std::array<Wide, 4>, 10>;

@@ -168,9 +168,8 @@ void ExplicitDynamics::kick(double dt) {
     if (options.damping_share > 0)
       for (std::size_t i = 0; i < batch.position.size(); ++i)
         batch.position[i] += Wide(options.damping_share * dt) * batch.velocity[i];
-    inverted[b] = batch.grain_in(internal_force(grains, batch, force, dt));
+    inverted[b] = batch.grain_in(internal_force_and_history(grains, batch, force, dt, batch_step_[b].flow));
     if (inverted[b] >= 0) return;
-    batch_step_[b].flow = advance_history(grains, batch, dt);  // where the force was taken
     kick_batch(dt, force, batch, batch_step_[b]);
     grains.for_each_vertex(
         batch, [&](int v, int i, int lane) { outline_velocity_[v] = lane_of(batch.velocity[i], lane); });

@@ -23,22 +23,15 @@ using StateOf = typename Law::template State<2, Wide>;
 
 template <class Law>
 [[gnu::flatten]] FlowOfStep advance(const Law& law, GrainBatch& batch, double dt) {
-  FlowOfStep sum;
+  HistoryOfStep<Law> step(batch);
   const LawAtPoints<Law> at(law, batch, dt);
   for_each_cell(law, batch, [&](const CellState& cell) {
     for (int p = 0; p < 4; ++p) {
       const StateOf<Law> before = at.history(cell, p);
-      const auto [after, dissipated] = law.deviatoric().advance(cell.F[p], before, dt);
-      const double volume = cell.points[p].volume;
-      sum.dissipated += volume * dissipated;
-      sum.flowing +=
-          select(Law::plastic_strain(after) > Law::plastic_strain(before), Wide(volume), Wide(0.0));
-      std::copy(after.begin(), after.end(),
-                &batch.history[after.size() * static_cast<std::size_t>(4 * cell.index + p)]);
+      step.keep(cell, p, before, law.deviatoric().advance(cell.F[p], before, dt));
     }
   });
-  const Wide square = batch.radius * batch.radius;
-  return {sum.dissipated * square, sum.flowing * square};
+  return step.sum();
 }
 
 }  // namespace
@@ -95,9 +88,11 @@ void visit_history(SoftGrains& grains, StateVisitor& visit) {
   for (const GrainBatch& batch : grains.batches)
     for (const Wide& number : batch.history)
       for (int lane = 0; lane < Wide::size; ++lane) values.push_back(number[lane]);
-  visit.rows({"history", "", Owner::point, Role::state,
-              "C_p^-1 (11, 22, 12) and the plastic strain of each point of eight grains"},
-             values, Wide::size);
+  visit.rows(
+      {"history", "", Owner::point, Role::state,
+       "of each point of eight grains C_p^-1 (11, 22, 12) and the plastic strain; of what relaxes U of "
+       "C = U^T U and C_v^-1 of four branches (11, 22, 12 each)"},
+      values, Wide::size);
   const double* value = values.data();
   for (GrainBatch& batch : grains.batches)
     for (Wide& number : batch.history) {

@@ -3,6 +3,7 @@
 
 #include "softgrain/material/elastic_law.hpp"
 #include "softgrain/soft/cell_state.hpp"
+#include "softgrain/soft/history.hpp"
 
 namespace softgrain {
 
@@ -50,6 +51,35 @@ struct LawAtPoints<Law> {
   const Law& law;
   const GrainBatch& batch;
   double dt;
+};
+
+/// Writes down what a step does to the points of a batch, and sums it up.
+template <class Law>
+requires HistoryLaw<Law, 2>
+class HistoryOfStep {
+ public:
+  using State = typename Law::template State<2, Wide>;
+
+  explicit HistoryOfStep(GrainBatch& grains) : batch_(grains) {}
+
+  /// Advanced is what the law's advance says of point p.
+  template <class Advanced>
+  void keep(const CellState& cell, int p, const State& before, const Advanced& advanced) {
+    const State& after = advanced.state;
+    const double volume = cell.points[p].volume;
+    sum_.dissipated += volume * advanced.dissipated;
+    sum_.flowing += select(Law::plastic_strain(after) > Law::plastic_strain(before), Wide(volume), Wide(0.0));
+    std::copy(after.begin(), after.end(),
+              &batch_.history[after.size() * static_cast<std::size_t>(4 * cell.index + p)]);
+  }
+  FlowOfStep sum() const {
+    const Wide square = batch_.radius * batch_.radius;
+    return {sum_.dissipated * square, sum_.flowing * square};
+  }
+
+ private:
+  GrainBatch& batch_;
+  FlowOfStep sum_;
 };
 
 }  // namespace softgrain

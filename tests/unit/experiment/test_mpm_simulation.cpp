@@ -75,7 +75,9 @@ TEST_CASE(
         Case c = small_packing(integrator);
         c.experiment.loading = loading;
         c.mpm.law = law.law;
-        c.mpm.material.yield_stress = 1e5;  // of what flows
+        c.mpm.material.yield_stress = c.mpm.material.creep_stress = 1e5;  // of what flows
+        c.mpm.material.creep_rate = c.mpm.material.relaxation_time_1 = 1;
+        c.mpm.material.relaxation_share_1 = 0.4;
         const auto row = row_of(create_simulation(c)->observe());
         const double unit = c.mpm.material.young_modulus * c.grain.radius * c.grain.radius;
         CHECK(std::abs(value_of(row, "elastic_energy")) < 1e-12 * unit);

@@ -12,8 +12,24 @@ namespace softgrain::test {
 
 inline constexpr double E = 2.0, nu = 0.3;  // stresses of order one
 /// For laws that take more.
-inline constexpr MaterialParameters material{
-    .young_modulus = E, .poisson_ratio = nu, .c20 = -0.1, .c30 = 0.05, .yield_stress = 0.05};
+inline constexpr MaterialParameters material{.young_modulus = E,
+                                             .poisson_ratio = nu,
+                                             .c20 = -0.1,
+                                             .c30 = 0.05,
+                                             .yield_stress = 0.05,
+                                             .c01 = 0.1,
+                                             .ogden_exponent_1 = 1.3,
+                                             .ogden_exponent_2 = 5,
+                                             .ogden_exponent_3 = -2,
+                                             .ogden_share_2 = 0.1,
+                                             .ogden_share_3 = 0.2,
+                                             .creep_rate = 0.2,
+                                             .creep_stress = 0.1,
+                                             .creep_exponent = 4,
+                                             .relaxation_share_1 = 0.4,
+                                             .relaxation_share_2 = 0.3,
+                                             .relaxation_time_1 = 0.1,
+                                             .relaxation_time_2 = 1};
 
 /// Calls check(name, law) for every elastic law that a case file can choose.
 template <class Check>

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <numbers>
+#include <utility>
 
 #include "samples.hpp"
 
@@ -26,6 +27,20 @@ double energy_in_stretches(const std::string& law, const Vec<3>& s) {
   if (law == "yeoh") {
     const double i = dot(s, s) / std::cbrt(J * J) - 3, log_J = std::log(J);
     return mu / 2 * i - 0.1 * i * i + 0.05 * i * i * i + (lambda + 2 * mu / 3) / 2 * log_J * log_J;
+  }
+  const double third = std::cbrt(J), log_J = std::log(J),
+               of_volume = (lambda + 2 * mu / 3) / 2 * log_J * log_J;
+  if (law == "mooney_rivlin") {
+    const double I1 = dot(s, s),
+                 I2 = s[0] * s[0] * s[1] * s[1] + s[1] * s[1] * s[2] * s[2] + s[2] * s[2] * s[0] * s[0];
+    return (mu / 2 - 0.1) * (I1 / (third * third) - 3) + 0.1 * (I2 / (J * third) - 3) + of_volume;
+  }
+  if (law == "ogden") {
+    double sum = of_volume;
+    for (const auto& [share, alpha] : {std::pair{0.7, 1.3}, std::pair{0.1, 5.0}, std::pair{0.2, -2.0}})
+      for (const double stretch : s.c)
+        sum += 2 * share * mu / (alpha * alpha) * (std::pow(stretch / third, alpha) - 1);
+    return sum;
   }
   const double U = law == "neo_hookean" ? std::log(J) * std::log(J) : (J - 1) * (J - 1);
   return mu / 2 * (dot(s, s) - 3) - mu * std::log(J) + lambda / 2 * U;

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <limits>
+#include <utility>
 
 #include "samples.hpp"
 #include "softgrain/core/error.hpp"
@@ -108,6 +109,10 @@ TEST_CASE("a law comes apart into a part of the order of mu and an energy of vol
   check_split<3>(small_strain_hooke(E, nu));
   check_split<2>(yeoh(E, nu, -0.1, 0.05));
   check_split<3>(yeoh(E, nu, -0.1, 0.05));
+  check_split<2>(mooney_rivlin(E, nu, 0.1));
+  check_split<3>(mooney_rivlin(E, nu, 0.1));
+  check_split<2>(ogden(E, nu, {1.3, 5, -2}, 0.1, 0.2));
+  check_split<3>(ogden(E, nu, {1.3, 5, -2}, 0.1, 0.2));
   check_split<2>(st_venant_kirchhoff(E, nu));
   check_split<3>(st_venant_kirchhoff(E, nu));
 }
@@ -126,23 +131,75 @@ TEST_CASE("towards incompressibility all that grows without bound is in the ener
   check(st_venant_kirchhoff(E, 0.4999), st_venant_kirchhoff(E, nu));
 }
 
-// Rivlin's: P = 2 (s - 1/s^2) dpsi/dI1 of a bar pulled to s times its length, free across.
-TEST_CASE("nearly incompressible Yeoh rubber in tension has the closed form of rubber elasticity") {
-  const double c20 = -0.1, c30 = 0.05, almost = 0.49999999;
-  const Yeoh law = yeoh(E, almost, c20, c30);
+namespace {
+
+constexpr double almost = 0.49999999;  // incompressible
+
+/// P of a bar pulled to s times its length, free across, which it finds by Newton's method.
+template <class Law>
+double pulled(const Law& law, double s) {
+  double across = 1 / std::sqrt(s);
+  for (int k = 0; k < 20; ++k) {
+    const Mat<3> F = Mat<3>::diagonal({s, across, across});
+    const Mat<9> A = law.tangent(F);
+    across -= law.stress(F)(1, 1) / (A(4, 4) + A(4, 8));
+  }
+  return law.stress(Mat<3>::diagonal({s, across, across}))(0, 0);
+}
+
+}  // namespace
+
+// Rivlin's: P = 2 (s - 1/s^2) (dpsi/dI1 + dpsi/dI2 / s).
+TEST_CASE(
+    "nearly incompressible rubber of Yeoh or Mooney in tension has the closed form of rubber elasticity") {
+  const double c20 = -0.1, c30 = 0.05, c01 = 0.12;
   const double c10 = E / (4 * (1 + almost));
   for (const double s : {0.4, 0.8, 1.5, 3.0, 5.0}) {
-    double across = 1 / std::sqrt(s);  // where nothing pulls across, by Newton's method
-    for (int k = 0; k < 20; ++k) {
-      const Mat<3> F = Mat<3>::diagonal({s, across, across});
-      const Mat<9> A = law.tangent(F);
-      across -= law.stress(F)(1, 1) / (A(4, 4) + A(4, 8));
-    }
-    const double i = s * s + 2 / s - 3;
+    const double i = s * s + 2 / s - 3, factor = 2 * (s - 1 / (s * s));
     const double slope = c10 + 2 * c20 * i + 3 * c30 * i * i;
-    CHECK(law.stress(Mat<3>::diagonal({s, across, across}))(0, 0) ==
-          doctest::Approx(2 * (s - 1 / (s * s)) * slope).epsilon(1e-4));
+    CHECK(pulled(yeoh(E, almost, c20, c30), s) == doctest::Approx(factor * slope).epsilon(1e-4));
+    CHECK(pulled(mooney_rivlin(E, almost, c01), s) ==
+          doctest::Approx(factor * (c10 - c01 + c01 / s)).epsilon(1e-4));
   }
+}
+
+// Treloar's rubber as Ogden (1972) fitted it: mu_p = .63, .0012, -.01 MPa, alpha_p = 1.3, 5, -2.
+TEST_CASE("Ogden's fit of Treloar's rubber in tension has the closed form, to seven times the length") {
+  const double mu = (0.63 * 1.3 + 0.0012 * 5 + 0.01 * 2) / 2;
+  const Ogden law =
+      ogden(2 * (1 + almost) * mu, almost, {1.3, 5, -2}, 0.0012 * 5 / (2 * mu), 0.01 * 2 / (2 * mu));
+  CHECK(law.mu_p[0] == doctest::Approx(0.63));
+  CHECK(law.mu_p[2] == doctest::Approx(-0.01));
+  for (const double s : {0.5, 1.2, 2.0, 4.0, 7.0}) {
+    double expected = 0;
+    for (const auto& [mu_p, alpha] : {std::pair{0.63, 1.3}, std::pair{0.0012, 5.0}, std::pair{-0.01, -2.0}})
+      expected += mu_p * (std::pow(s, alpha - 1) - std::pow(s, -alpha / 2 - 1));
+    CHECK(pulled(law, s) == doctest::Approx(expected).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("Ogden's law with the exponent 2 is neo-Hookean but for the volume, and with 2 and -2 Mooney's") {
+  for (const Mat<2>& F : sample_deformations<2>()) {
+    const Ogden two = ogden(E, nu, {2, -2, 7}, 0.25, 0);
+    const MooneyRivlin mooney = mooney_rivlin(E, nu, 0.25 * two.mu / 2);
+    CHECK(difference(two.stress(F), mooney.stress(F)) < 1e-13 * (1 + largest_entry(mooney.stress(F))));
+    CHECK(difference(ogden(E, nu, {2, 0, 0}, 0, 0).stress(F), yeoh(E, nu, 0, 0).stress(F)) < 1e-12);
+  }
+}
+
+TEST_CASE("rubber of Mooney or Ogden that would give way when stretched is refused by name") {
+  CHECK_THROWS_WITH_AS(
+      mooney_rivlin(4 * 1.3, nu, 1.5),
+      "c01 must lie in [0, 1] Pa, so that C_10 = E/(4 (1 + nu)) - c01 is not below 0; got 1.5 Pa",
+      UsageError);
+  CHECK_THROWS_AS(mooney_rivlin(E, nu, -0.1), UsageError);
+  CHECK_THROWS_WITH_AS(
+      ogden(E, nu, {2, 4, -2}, 0.7, 0.3),
+      "ogden_share_2 and ogden_share_3 must be >= 0 and leave something of the shear modulus to "
+      "the first term, got 0.7 and 0.3",
+      UsageError);
+  CHECK_THROWS_WITH_AS(ogden(E, nu, {2, 0, -2}, 0.1, 0),
+                       "ogden_exponent_2 must not be 0 where its term has a share", UsageError);
 }
 
 TEST_CASE("Yeoh rubber that would give way when stretched is refused by name") {
@@ -181,8 +238,18 @@ TEST_CASE("every law is made by its own factory, and stands at its place in the 
   CHECK(std::holds_alternative<StVenantKirchhoff>(make_law(MaterialLaw::st_venant_kirchhoff, E, nu)));
   CHECK(std::holds_alternative<Yeoh>(make_law(MaterialLaw::yeoh, E, nu)));
   CHECK(std::holds_alternative<VonMises>(make_law(MaterialLaw::von_mises, material)));
+  MaterialParameters pulled_back = material;
+  pulled_back.kinematic_modulus = 1;
+  CHECK(std::holds_alternative<VonMisesKinematic>(make_law(MaterialLaw::von_mises, pulled_back)));
+  CHECK(std::holds_alternative<VonMises>(make_law(MaterialLaw::norton, material)));
+  CHECK(std::holds_alternative<MooneyRivlin>(make_law(MaterialLaw::mooney_rivlin, E, nu)));
+  CHECK(std::holds_alternative<Ogden>(make_law(MaterialLaw::ogden, E, nu)));
+  CHECK(std::holds_alternative<Prony>(make_law(MaterialLaw::prony, material)));
   CHECK_THROWS_AS(make_law(MaterialLaw::hencky, -1, nu), UsageError);
-  for (const LawChoice& choice : law_choices()) CHECK(&law_choice(choice.law) == &choice);
+  for (const LawChoice& choice : law_choices()) {
+    CHECK(&law_choice(choice.law) == &choice);
+    CHECK(has_history(choice.make(material)) == choice.remembers());
+  }
 }
 
 TEST_CASE("who chooses a law with a limited range is told so") {

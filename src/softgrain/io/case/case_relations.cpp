@@ -180,7 +180,7 @@ std::string formulation_cannot(const Case& c) {
     return fmt::format(
         "mpm.formulation \"updated_lagrangian\" needs experiment.loading \"diametral\", not \"{}\"",
         word_of(c.experiment.loading));
-  if (updated && law_impossible(c).empty() && law_choice(c.mpm.law).flows())
+  if (updated && law_impossible(c).empty() && law_choice(c.mpm.law).remembers())
     return fmt::format("mpm.formulation \"updated_lagrangian\" takes elastic laws only, not mpm.law \"{}\"",
                        word_of(c.mpm.law));
   if (!updated && c.mpm.contact_on != ContactOn::outline)

@@ -61,3 +61,33 @@ TEST_CASE("a parameter that the law does not take is named as without effect") {
       "[[kind]]\nmodel = 'mpm'\nlaw = { name = 'hencky', yield_stress = '70 MPa' }\n", "case.toml", {});
   CHECK(metal.without_effect == std::vector<std::string>{"mpm.yield_stress"});
 }
+
+TEST_CASE("laws that creep, relax or pull back take their numbers with units") {
+  const Case wax =
+      parse_case(mpm + "law = 'norton'\ncreep_rate = '0.1 1/s'\ncreep_stress = '2 MPa'\ncreep_exponent = 5\n",
+                 "case.toml", {});
+  CHECK(wax.mpm.law == MaterialLaw::norton);
+  CHECK(wax.mpm.material.creep_rate == 0.1);
+  CHECK(wax.mpm.material.creep_stress == 2e6);
+  CHECK(wax.mpm.material.creep_exponent == 5);
+  const Case gel = parse_case(
+      "[[kind]]\nmodel = 'mpm'\nlaw = { name = 'prony', relaxation_share_1 = 0.4, relaxation_time_1 = '20 "
+      "ms' }\n",
+      "case.toml", {});
+  CHECK(gel.mpm.law == MaterialLaw::prony);
+  CHECK(gel.mpm.material.relaxation_time_1 == doctest::Approx(0.02));
+  const Case metal = parse_case(mpm + "law = 'von_mises'\nyield_stress = 1e5\nkinematic_modulus = '1 MPa'\n",
+                                "case.toml", {});
+  CHECK(metal.mpm.material.kinematic_modulus == 1e6);
+  CHECK(mentions(refusal(mpm + "law = 'norton'\ncreep_rate = 1\n"),
+                 "creep needs a creep_rate > 0 1/s and a creep_stress > 0 Pa, got 1 and 0"));
+  CHECK(mentions(refusal(mpm + "law = 'norton'\ncreep_exponent = 0.5\n"), "mpm.creep_exponent"));
+  CHECK(mentions(refusal(mpm + "law = 'prony'\n"), "what relaxes needs a relaxation_share_1 > 0"));
+  CHECK(mentions(refusal(mpm + "law = 'prony'\nrelaxation_share_2 = 0.4\n"),
+                 "relaxation_share_2 and relaxation_time_2 belong together"));
+  CHECK(mentions(refusal(mpm + "law = 'ogden'\nogden_exponent_1 = 0\n"), "ogden_exponent_1 must not be 0"));
+  CHECK(mentions(refusal(mpm + "law = 'mooney_rivlin'\nc01 = '50 MPa'\n"), "c01 must lie in [0, "));
+  CHECK(mentions(refusal(mpm + "law = 'norton'\ncreep_rate = 1\ncreep_stress = 1e5\n"
+                               "formulation = 'updated_lagrangian'\n"),
+                 "takes elastic laws only, not mpm.law \"norton\""));
+}

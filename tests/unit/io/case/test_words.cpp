@@ -30,7 +30,7 @@ TEST_CASE("every choice of a case has its own word, which leads back to it") {
   check_words(LoadingPath::stages);
   check_words(GrainModel::mpm);
   check_words(EqualPrimaries::size);
-  check_words(MaterialLaw::von_mises);
+  check_words(MaterialLaw::prony);
   check_words(Integrator::symplectic_euler);
   check_words(Formulation::updated_lagrangian);
   check_words(ShapeFunction::bspline);
