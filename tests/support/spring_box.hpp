@@ -106,4 +106,43 @@ struct SpringRun {
   }
 };
 
+constexpr double v = 2, dt = 1e-6, target = 1e6;  // of walls, steps and stresses
+
+inline SpringRun run_of(const std::vector<Stage>& stages, double stiffness = 10 * target) {
+  const Box<2> box = square_box();
+  const LoadingFrame frame{.measure = {}, .wall_velocity = v, .packing_fraction = 0.6};
+  return {.loading = Loading(stages, frame, box), .model = SpringModel(stiffness), .dt = dt};
+}
+
+inline SpringRun run_of(const Case::Loading& keys, LoadingPath path = LoadingPath::compaction,
+                        double stiffness = 10 * target) {
+  Case c;
+  c.experiment.loading = path;
+  c.loading = keys;
+  c.sample.packing_fraction = 0.6;
+  check_loading(c);
+  return {
+      .loading = Loading(stages_of(c), frame_of(c), square_box()), .model = SpringModel(stiffness), .dt = dt};
+}
+
+inline Drive moves(Part part, double velocity) {
+  return {.part = part, .control = Control::velocity, .value = velocity};
+}
+inline Drive keeps(Part part, double stress) {
+  return {.part = part, .control = Control::stress, .value = stress};
+}
+
+inline Until until_strain(double strain) {
+  Until until;
+  until.strain[0] = strain;
+  return until;
+}
+inline Until until_stress(Part part, double stress) {
+  Until until;
+  until.stress[static_cast<std::size_t>(part)] = stress;
+  return until;
+}
+
+inline double strain_xx(const Box<2>& box) { return std::log(square_box().width() / box.width()); }
+
 }  // namespace softgrain::test

@@ -156,7 +156,7 @@ double Loading::closing_speed(const Stage& stage, const Speeds& speeds, int comp
 void Loading::end_at_strain(const Stage& stage, const Box<2>& box, Speeds& speeds, double dt) {
   for (int c = 0; c < 2; ++c) {
     if (!stage.until.strain[c] || closing_[c] == 0) continue;
-    const bool alone = std::ranges::all_of(stage.drives, [&](const Drive& drive) {
+    const bool alone = std::all_of(stage.drives.begin(), stage.drives.end(), [&](const Drive& drive) {
       return is_given(drive) || closing_share(drive.part, c, 1) == 0 || drive.control == Control::rest;
     });
     if (!alone) continue;

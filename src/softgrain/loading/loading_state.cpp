@@ -9,7 +9,7 @@ void Loading::visit_start(StateVisitor& visit) {
   std::vector<double> start(frame_.start.begin(), frame_.start.end());
   visit({"box_start", "m", Owner::run, Role::state, "height and width of the box where strains count from"},
         start);
-  std::ranges::copy(start, frame_.start.begin());
+  std::copy(start.begin(), start.end(), frame_.start.begin());
   if (frame_.measure.kind == StrainMeasure::Kind::of_box) frame_.measure.length = frame_.start[0];
 }
 
@@ -20,7 +20,7 @@ template <std::size_t N>
 void visit_numbers(StateVisitor& visit, const Field& field, std::array<double, N>& numbers) {
   std::vector<double> values(numbers.begin(), numbers.end());
   visit(field, values);
-  std::ranges::copy(values, numbers.begin());
+  std::copy(values.begin(), values.end(), numbers.begin());
 }
 
 }  // namespace

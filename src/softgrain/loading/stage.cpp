@@ -39,7 +39,7 @@ std::string contradiction(const Stage& stage) {
 }
 
 bool moves_by_itself(const Stage& stage) {
-  return std::ranges::any_of(stage.drives, [](const Drive& drive) {
+  return std::any_of(stage.drives.begin(), stage.drives.end(), [](const Drive& drive) {
     return (drive.control == Control::velocity || drive.control == Control::rate) && drive.value != 0;
   });
 }
@@ -91,7 +91,8 @@ std::string_view name_of(Part part) {
 }
 
 bool Stage::is_driven(Control control) const {
-  return std::ranges::find(drives, control, &Drive::control) != drives.end();
+  return std::any_of(drives.begin(), drives.end(),
+                     [&](const Drive& drive) { return drive.control == control; });
 }
 
 std::string Stage::title(std::size_t number) const {
@@ -107,7 +108,8 @@ std::vector<Stage> without_repeats(const std::vector<Stage>& stages) {
     if (stage.repeat == 1) continue;
     std::size_t first = all.size() - 1;
     if (!stage.repeat_from.empty()) {
-      const auto found = std::ranges::find(begins, stage.repeat_from, [](const auto& b) { return b.first; });
+      const auto found = std::find_if(begins.begin(), begins.end(),
+                                      [&](const auto& b) { return b.first == stage.repeat_from; });
       require(found != begins.end(), "repeat_from = \"{}\": no stage before has this name",
               stage.repeat_from);
       first = found->second;
