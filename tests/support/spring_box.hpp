@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/loading/loading.hpp"
 #include "support/fake_simulation.hpp"
 

@@ -78,15 +78,14 @@ double wave_speed(const Case& c) { return std::sqrt(wave_modulus(c) / c.grain.de
 
 /// CPU time of an implicit step for each point [s]. In a box it grows with s = dt c/R, the wave times of a
 /// grain that the step lasts, more so among many grains, with the root of the cells and where grains are
-/// pressed beyond phi_0 = 0.95: 20, 80 and 300 grains of 6 cells took 1.0, 4.8 and 48 s to a strain of 0.25
-/// (80: 0.22) at 0.5 m/s, and 3.7, 34 and 551 s at 1 mm/s. One grain between walls costs the same at any
-/// speed.
+/// pressed beyond phi_0 = 0.95: 20 and 80 grains of 6 cells took 1.0 and 5.4 s to a strain of 0.25 and 0.22
+/// at 0.5 m/s, and 4.3 and 53 s at 1 mm/s. One grain between walls costs the same at any speed.
 double implicit_seconds_of_point(const Case& c) {
   if (!is_in_a_box(c)) return 5.2e-7;
   const double s = first_time_step(c) * wave_speed(c) / smallest_radius(c);
   const double phi = c.sample.packing_fraction * std::exp((is_isotropic(c) ? 2 : 1) * last_strain(c));
   const double pressed = 1 + 4 * std::max(0.0, phi - 0.95);
-  const double crowd = std::pow(std::max(1.0, grains(c) / 20), 0.3);
+  const double crowd = std::pow(std::max(1.0, grains(c) / 20), 0.4);
   return 1.7e-7 * (1 + 6 * crowd * s / (s + 20)) * std::sqrt(c.mpm.cells / 6.0) * pressed;
 }
 

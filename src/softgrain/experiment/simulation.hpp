@@ -30,7 +30,7 @@ class Simulation final {
 
   bool finished() const { return loading_.finished(); }
   /// 0 at the start, 1 when finished; never goes back.
-  double progress() const { return loading_.progress(time(), dt_, steps_planned_); }
+  double progress() const { return loading_.progress(time(), dt_); }
   double time() const { return static_cast<double>(step_) * dt_; }  ///< [s]
   double strain() const { return loading_.strain(box_); }           ///< by the walls, as in the rows
   double time_step() const { return dt_; }                          ///< [s]

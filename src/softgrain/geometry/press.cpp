@@ -8,7 +8,7 @@ void Press::end_step(double v, double impulse, double dt) {
   const double lack = force - mean_force;
   speed = v;
   mean_force += dt / (dt + time()) * (impulse / dt - mean_force);
-  waiting = lack * (force - mean_force) > 0 ? waiting + dt : 0;
+  waiting = lack * (force - mean_force) > 0 ? waiting + dt : waiting / 2;
 }
 
 }  // namespace softgrain

@@ -49,7 +49,15 @@ Loading::Loading(const std::vector<Stage>& stages, const LoadingFrame& frame, co
   plan_stages();
 }
 
-void Loading::plan_stages() { planned_ = plan(stages_, frame_, travel_start_); }
+/// Stages that are over, as they were foreseen at the start; the others from where the present one began.
+void Loading::plan_stages() {
+  planned_ = plan(stages_, frame_, travel_start_);
+  if (number_ == 0 || stage_ >= stages_.size()) return;
+  const std::vector<Stage> rest(stages_.begin() + static_cast<std::ptrdiff_t>(stage_), stages_.end());
+  const auto planned =
+      plan(rest, frame_, {frame_.start[0] - length_at_stage_[0], frame_.start[1] - length_at_stage_[1]});
+  std::copy(planned.begin(), planned.end(), planned_.begin() + static_cast<std::ptrdiff_t>(stage_));
+}
 
 double Loading::length(const Box<2>& box, int component) const {
   return box.bounded(1 - component) ? box.length(1 - component) : frame_.start[component];
@@ -84,11 +92,14 @@ std::int64_t Loading::steps_planned(double dt) const {
   return steps;
 }
 
-double Loading::progress(double time, double dt, std::int64_t planned) const {
+/// What was left when the present stage began falls to this one and those to come as their times are
+/// foreseen now.
+double Loading::progress(double time, double dt) const {
   if (finished()) return 1;
-  const std::int64_t late = steps_in(time - stage_start_, dt) - planned_[stage_].steps(dt);
-  const double over = saved_ - static_cast<double>(std::max<std::int64_t>(late, 0)) * dt;
-  return std::min(1.0, (time + over) / (static_cast<double>(planned) * dt));
+  std::int64_t rest = 0;
+  for (std::size_t k = stage_; k < planned_.size(); ++k) rest += planned_[k].steps(dt);
+  const double done = std::min((time - stage_start_) / dt, static_cast<double>(planned_[stage_].steps(dt)));
+  return progress_at_stage_ + (1 - progress_at_stage_) * done / static_cast<double>(rest);
 }
 
 bool Loading::asks_for_rest() const { return !finished() && stage_now().until.rest.has_value(); }
@@ -262,11 +273,9 @@ void Loading::judge_presses(const Box<2>& box, double time, double dt) {
 
 void Loading::leave_stage(std::size_t next, const Box<2>& box, double time, double dt) {
   note_unkept();
-  std::int64_t saved = planned_[stage_].steps(dt) - steps_in(time - stage_start_, dt);
-  for (++stage_; stage_ < stages_.size() && (stage_ < next || (stages_[stage_].only_by_exit && !kept_last_));
-       ++stage_)
-    saved += planned_[stage_].steps(dt);
-  saved_ += static_cast<double>(saved) * dt;
+  progress_at_stage_ = progress(time, dt);
+  do ++stage_;
+  while (stage_ < stages_.size() && (stage_ < next || (stages_[stage_].only_by_exit && !kept_last_)));
   if (stage_ < stages_.size()) begin_stage(box, time);
 }
 
@@ -275,6 +284,7 @@ void Loading::begin_stage(const Box<2>& box, double time) {
   stage_start_ = time;
   stress_at_stage_ = stress_;
   for (int c = 0; c < 2; ++c) length_at_stage_[c] = length(box, c);
+  if (!motion_.velocity) plan_stages();
   held_ = {};
   const OfParts speed = press_speed_, force = press_force_, waiting = press_waiting_;
   press_speed_ = press_force_ = press_waiting_ = {};

@@ -47,9 +47,9 @@ class Loading {
   void follow(WallMotion motion);
 
   bool finished() const { return ended_ != End::none || stage_ >= stages_.size(); }
-  /// Share of what is planned that is over, at a time [s] with so many planned steps of dt [s]; 1 when
-  /// finished. A stage that ends early is over as a whole.
-  double progress(double time, double dt, std::int64_t planned) const;
+  /// Share of what is planned that is over, at a time [s] in steps of dt [s]; 1 when finished. It never goes
+  /// back, whenever stages end.
+  double progress(double time, double dt) const;
   /// Steps of dt that all stages are expected to take.
   std::int64_t steps_planned(double dt) const;
   /// Number of the stage of the last step: 0 the first, then one more after every turn.
@@ -125,7 +125,7 @@ class Loading {
   double stage_start_ = 0;                   // [s]
   std::array<double, 2> length_at_stage_{};  // of the box where it began [m]
   int number_ = 0, number_of_last_ = 0;
-  double saved_ = 0;  // time that stages took less than planned [s]
+  double progress_at_stage_ = 0;  // when it began
   End ended_ = End::none;
   int exit_ = -1;                    // of the stage's exits, that ended the loading
   bool kept_last_ = false;           // an exit led to the last stage

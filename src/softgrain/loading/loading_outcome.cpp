@@ -111,7 +111,8 @@ LoadingOutcome Loading::outcome_of_stresses() const {
                                  : std::string(stage.key);
     return {.completed = false,
             .shortfall = fmt::format("{} was not kept: over the second half of {} the stress was {}", what,
-                                     stage.key.empty() ? "the stage" : "loading.hold", unkept_.text())};
+                                     stage.key.empty() || !stage.until.time ? "the stage" : "loading.hold",
+                                     unkept_.text())};
   }
   if (unreached_stage_ < 0) return {};
   const Stage& stage = stages_[unreached_stage_];

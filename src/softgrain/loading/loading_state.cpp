@@ -35,7 +35,7 @@ void Loading::visit_stage(StateVisitor& visit) {
                 length_at_stage_);
   number("stage_number", "", "how many stages came before it", number_);
   number("stage_number_of_last", "", "before that of the last step", number_of_last_);
-  number("stage_saved", "s", "by which stages were shorter than planned", saved_);
+  number("stage_progress", "", "share of the loading that was over when the stage began", progress_at_stage_);
   number("loading_end", "",
          "0: none, 1: an end of the case, 2: a stage without its end, 3: the grains are exhausted", ended_);
   number("loading_exit", "", "which end of the case; -1: none", exit_);

@@ -14,7 +14,7 @@ SolvedContactProblem Model::caught_problem(double) { return {}; }
 
 PressBody critically_damped(double density, double wave_speed, double length, double dt) {
   const double stiffness = density * wave_speed * wave_speed / length;
-  const double tau = std::max(length / wave_speed, 2 * dt);
+  const double tau = std::max(length / wave_speed, dt / 10);
   return {.mass = stiffness * tau * tau, .damper = 2 * stiffness * tau};
 }
 

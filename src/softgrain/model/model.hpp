@@ -63,8 +63,9 @@ struct PressBody {
 
 /// Of grains that fill a box of length L along the axis of the press, with waves of speed c. Their stiffness
 /// over the area of a wall is k = rho c^2/L, and
-///   m = k tau^2,  Z = 2 k tau,  tau = max(L/c, 2 dt):
-/// the press is damped critically, takes up the waves that come to it, and is slow enough for steps of dt.
+///   m = k tau^2,  Z = 2 k tau,  tau = max(L/c, dt/10):
+/// the press is damped critically and takes up the waves that come to it; in long implicit steps, which damp
+/// by themselves, it weighs a few hundredths of what its contacts do.
 /// Grains that are softer, as a packing is before it jams, damp it more.
 PressBody critically_damped(double density, double wave_speed, double length, double dt);
 

@@ -16,7 +16,7 @@ constexpr double furthest = 4;
 constexpr double quasi_static_correction = 8, quasi_static_force = 10;
 
 /// Contact force over rho c^2 R from which on it is the measure of unbalanced ones.
-constexpr double least_force = 3e-3;
+constexpr double least_force = 1e-3;
 
 /// df . df and df . f of each lane, df = f - f_before.
 std::array<Wide, 2> change_of(const WideVectors& f, const WideVectors& f_before) {

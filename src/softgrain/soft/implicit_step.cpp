@@ -21,6 +21,10 @@ constexpr int refactor_every = 8;
 /// NLGS sweeps in vain (docs/decisions/0013).
 constexpr double contact_share = 0.25;
 
+/// The same in a slow step while hardly any force holds the grains: what NLGS leaves would push them about by
+/// more than Newton's tolerance (docs/decisions/0031).
+constexpr double floppy_share = 0.1;
+
 /// A vertex may be this many tolerances deep: the worst contact that NLGS allows, and Newton's last move.
 constexpr double deepest = 10;
 
@@ -210,6 +214,12 @@ std::vector<double> ImplicitDynamics::friction_of_contacts() const {
   return friction;
 }
 
+double ImplicitDynamics::mean_contact_force(double dt) const {
+  double sum = 0;
+  for (const Vec<2>& p : impulse) sum += norm(p);
+  return sum / (dt * grains.size());
+}
+
 /// Contacts at the present positions, and their impulses by NLGS with warm start. True if it converged.
 bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   grains.gather_outline(outline_.position);
@@ -222,7 +232,8 @@ bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   system.apply_impulses(impulse);
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
-  solver.tolerance = contact_share * options.tolerance;
+  const bool floppy = step_of_matrix(dt) < dt && mean_contact_force(dt) < least_contact_force();
+  solver.tolerance = (floppy ? floppy_share : contact_share) * options.tolerance;
   const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction_of_contacts(), solver);
   report.sweeps += solved.sweeps;
   press_moved_ = move_presses(box, pressed, dt);

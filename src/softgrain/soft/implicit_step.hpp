@@ -135,7 +135,8 @@ class ImplicitDynamics {
   double unbalanced_force(std::span<const Vec<2>> contact_force) const;
   void follow_secant(bool accelerated);
   void follow_momentum(bool first, bool accelerated);
-  double least_contact_force() const;  // of a packing that carries something [N/m]
+  double mean_contact_force(double dt) const;  // sum of all, over the number of grains [N/m]
+  double least_contact_force() const;          // of a packing that carries something [N/m]
   double find_depth();
   void catch_problem(double dt);
   void flow(double dt);

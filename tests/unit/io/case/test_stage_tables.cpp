@@ -13,11 +13,6 @@ using test::refusal;
 
 namespace {
 
-/// The resolved case, all that a case says.
-std::string resolved(const std::string& text, const std::vector<std::string>& sets = {}) {
-  return resolved_case_text(parse_case(text, "case.toml", sets));
-}
-
 const std::string box = "[experiment]\nloading = 'compaction'\nmodel = 'mpm'\n";
 
 }  // namespace
