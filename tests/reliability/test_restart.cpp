@@ -22,7 +22,7 @@ TEST_CASE(
     CAPTURE(whole.err);
     REQUIRE(whole.exit_code == 0);
     const std::size_t snapshots = workshop.snapshots("whole").size();
-    REQUIRE(snapshots == 9);  // the first state, six even shares of the run, and the two turns
+    REQUIRE(snapshots == 7 + tiny.turns);  // the first state, six even shares of the run, and the turns
     // five and six: one is the state at a turn, the other in the middle of unloading
     for (std::size_t kept = torture() ? 1 : 5; kept < (torture() ? snapshots : 7); ++kept) {
       const std::string part = "part" + std::to_string(kept);

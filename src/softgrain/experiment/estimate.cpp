@@ -85,8 +85,8 @@ double implicit_seconds_of_point(const Case& c) {
   const double s = first_time_step(c) * wave_speed(c) / smallest_radius(c);
   const double phi = c.sample.packing_fraction * std::exp((is_isotropic(c) ? 2 : 1) * last_strain(c));
   const double pressed = 1 + 4 * std::max(0.0, phi - 0.95);
-  const double crowd = std::pow(std::max(1.0, grains(c) / 20), 0.4);
-  return 1.7e-7 * (1 + 6 * crowd * s / (s + 20)) * std::sqrt(c.mpm.cells / 6.0) * pressed;
+  const double slow = s / (s + 20), crowd = std::pow(std::max(1.0, grains(c) / 20), 0.4 * slow);
+  return 1.7e-7 * (1 + 6 * crowd * slow) * std::sqrt(c.mpm.cells / 6.0) * pressed;
 }
 
 /// How much more grains that flow take: fresh tangents in more iterations; a return to the yield surface.

@@ -202,6 +202,7 @@ void read_stages(const std::vector<StageText>& texts, CaseDraft& draft) {
       draft.add(fault.at, fault.what);
     } catch (const UsageError& error) {
       draft.add(text.at, fmt::format("[[stage]]: {}", error.what()));
+      c.stages.back().repeat_from.clear();  // what comes next is checked without it
       return;
     }
   }
