@@ -11,14 +11,14 @@ namespace softgrain {
 namespace {
 
 /// Share of a square that lies in a circle about the origin, and the centre of that part.
-struct Part {
+struct PartOfCell {
   double share = 0;
   Vec<2> centre;
 };
 
-Part part_in_circle(const Vec<2>& corner, double side, double radius) {
+PartOfCell part_in_circle(const Vec<2>& corner, double side, double radius) {
   constexpr int samples = 32;  // in each direction
-  Part part;
+  PartOfCell part;
   for (int i = 0; i < samples; ++i)
     for (int j = 0; j < samples; ++j) {
       const Vec<2> x = corner + side / samples * Vec<2>{i + 0.5, j + 0.5};
@@ -61,7 +61,7 @@ PointGrain disk_of_points(double radius, const Vec<2>& centre, double cell, int 
   const auto last = [&](int d) { return static_cast<int>(std::ceil((centre[d] + radius) / side)); };
   for (int j = first(1); j < last(1); ++j)
     for (int i = first(0); i < last(0); ++i) {
-      const Part part = part_in_circle(Vec<2>{i * side, j * side} - centre, side, radius);
+      const PartOfCell part = part_in_circle(Vec<2>{i * side, j * side} - centre, side, radius);
       if (part.share < least_share) continue;
       grain.position.push_back(centre + part.centre);
       grain.volume.push_back(part.share * side * side);

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+
 #include "softgrain/math/arsinh_ratio.hpp"
 #include "softgrain/math/tensor.hpp"
 
@@ -40,8 +42,8 @@ template <class T>
 struct PlaneLogStrain {
   Mat<2, T> F;
   Mat<2, T> S;
-  Mat<2, T> Q[2];  ///< I_k = F Q_k : F is 2 Jbar D_k
-  Mat<2, T> FQ[2];
+  std::array<Mat<2, T>, 2> Q;  ///< I_k = F Q_k : F is 2 Jbar D_k
+  std::array<Mat<2, T>, 2> FQ;
   T J, log_J, inverse_J;
   T scale;  ///< 1/(2 Jbar), Jbar = J sqrt(det G)
   Vec<2, T> D;
@@ -99,7 +101,7 @@ PlaneLogResponse<T> respond(const PlaneLogStrain<T>& of, double bulk, const Plan
   Mat<2, T> M;
   for (int a = 0; a < 2; ++a)
     for (int b = 0; b < 2; ++b) M(a, b) = slope * D[a] * D[b] + (a == b ? 0.5 * of.g.value : T(0.0));
-  const Vec<2, T> by_D = M * w.by_p, by_Dd = M * w.by_dp;
+  const Vec<2, T> by_D = M * w.by_p, by_D_d = M * w.by_dp;
   Mat<2, T> by_DD = M * w.by_pp * M;
   for (int a = 0; a < 2; ++a)
     for (int b = 0; b < 2; ++b)
@@ -109,13 +111,13 @@ PlaneLogResponse<T> respond(const PlaneLogStrain<T>& of, double bulk, const Plan
   const Vec<2, T> turned = by_DD * D;
   const T first = bulk * of.log_J + (1.0 / 6.0) * w.by_d - dot(by_D, D);
   const T second =
-      bulk + (1.0 / 36.0) * w.by_dd - (1.0 / 3.0) * dot(by_Dd, D) + dot(turned, D) + dot(by_D, D);
+      bulk + (1.0 / 36.0) * w.by_dd - (1.0 / 3.0) * dot(by_D_d, D) + dot(turned, D) + dot(by_D, D);
   PlaneLogResponse<T> psi;
   psi.d_J = first * of.inverse_J;
   psi.d_JJ = (second - first) * (of.inverse_J * of.inverse_J);
   for (int a = 0; a < 2; ++a) {
     psi.d_I[a] = of.scale * by_D[a];
-    psi.d_IJ[a] = of.scale * of.inverse_J * ((1.0 / 6.0) * by_Dd[a] - turned[a] - by_D[a]);
+    psi.d_IJ[a] = of.scale * of.inverse_J * ((1.0 / 6.0) * by_D_d[a] - turned[a] - by_D[a]);
     for (int b = 0; b < 2; ++b) psi.d_II(a, b) = of.scale * of.scale * by_DD(a, b);
   }
   return psi;
