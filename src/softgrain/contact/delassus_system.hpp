@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "softgrain/contact/contact_system.hpp"
+#include "softgrain/contact/extrapolate.hpp"
 #include "softgrain/math/vec.hpp"
 
 namespace softgrain {
@@ -39,11 +40,7 @@ class DelassusSystem {
   /// u <- u + b (u - u'), u' the velocities when this was last called.
   void extrapolate(double b) {
     before_.resize(impulse_.size());
-    for (std::size_t c = 0; c < impulse_.size(); ++c) {
-      const Vec<Dim> p = impulse_[c];
-      if (b > 0) impulse_[c] += b * (p - before_[c]);
-      before_[c] = p;
-    }
+    for (std::size_t c = 0; c < impulse_.size(); ++c) softgrain::extrapolate(impulse_[c], before_[c], b);
   }
 
   std::span<const Vec<Dim>> free_velocity() const { return free_velocity_; }  ///< q [m/s]

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "softgrain/contact/contact_system.hpp"
+#include "softgrain/contact/extrapolate.hpp"
 #include "softgrain/contact/law.hpp"
 #include "softgrain/contact/residual.hpp"
 #include "softgrain/contact/signorini_coulomb.hpp"
@@ -41,11 +42,7 @@ class Extrapolation {
     const double next = 0.5 * (1 + std::sqrt(1 + 4 * t_ * t_)), b = (t_ - 1) / next;
     t_ = next;
     before_.resize(impulse.size());
-    for (std::size_t c = 0; c < impulse.size(); ++c) {
-      const Vec<Dim> p = impulse[c];
-      if (b > 0) impulse[c] += b * (p - before_[c]);
-      before_[c] = p;
-    }
+    for (std::size_t c = 0; c < impulse.size(); ++c) softgrain::extrapolate(impulse[c], before_[c], b);
     system.extrapolate(b);
   }
   /// After it.

@@ -3,9 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "softgrain/contact/contact_system.hpp"
-#include "softgrain/contact/law.hpp"
-#include "softgrain/contact/signorini_coulomb.hpp"
+#include "softgrain/contact/extrapolate.hpp"
+#include "softgrain/contact/nlgs.hpp"
 
 namespace softgrain {
 
@@ -48,11 +47,7 @@ struct PushedBodies {
 
   /// The pushes go ahead as impulses do (Extrapolation).
   void extrapolate(double b) {
-    for (PushedBody& body : bodies) {
-      const double push = body.push;
-      body.push += b * (push - body.before);
-      body.before = push;
-    }
+    for (PushedBody& body : bodies) softgrain::extrapolate(body.push, body.before, b);
   }
 
   /// The turns of their contacts in a sweep of nonlinear Gauss-Seidel, with
@@ -62,22 +57,35 @@ struct PushedBodies {
              Violation& violation) {
     for (const Pushing& pushing : contacts) {
       const auto c = static_cast<std::size_t>(pushing.contact);
-      PushedBody& body = bodies[static_cast<std::size_t>(pushing.body)];
-      Vec<Dim>& p = impulse[c];
-      Vec<Dim> u = system.relative_velocity(pushing.contact);
-      u[0] -= pushing.share * (body.velocity() - body.assumed);
-      if (u[0] >= 0 && p == Vec<Dim>{}) continue;
-      Mat<Dim> W = system.delassus_block(pushing.contact);
-      W(0, 0) += pushing.share * pushing.share * body.mobility;
-      const Vec<Dim> solved = solve_signorini_coulomb(W, u - W * p, friction[c]);
-      violation.add(W * (solved - p), solved[0]);
-      const Vec<Dim> dp = relaxed_impulse(p, solved, friction[c], relaxation) - p;
-      if (dp == Vec<Dim>{}) continue;
-      p += dp;
-      body.push += pushing.share * dp[0];
-      system.apply_impulse(pushing.contact, dp);
+      WithBody<Dim, System> seen{system, bodies[static_cast<std::size_t>(pushing.body)], pushing.share};
+      nlgs_update<Dim>(seen, pushing.contact, impulse[c], friction[c], relaxation, violation);
     }
   }
+
+ private:
+  /// The system as the contacts of a body see it.
+  template <int Dim, class System>
+  struct WithBody {
+    System& system;
+    PushedBody& body;
+    double share;
+
+    int size() const { return system.size(); }
+    Vec<Dim> relative_velocity(int contact) const {
+      Vec<Dim> u = system.relative_velocity(contact);
+      u[0] -= share * (body.velocity() - body.assumed);
+      return u;
+    }
+    Mat<Dim> delassus_block(int contact) const {
+      Mat<Dim> W = system.delassus_block(contact);
+      W(0, 0) += share * share * body.mobility;
+      return W;
+    }
+    void apply_impulse(int contact, const Vec<Dim>& dp) {
+      body.push += share * dp[0];
+      system.apply_impulse(contact, dp);
+    }
+  };
 };
 
 }  // namespace softgrain

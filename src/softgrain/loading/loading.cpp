@@ -14,11 +14,6 @@ constexpr double averaging_strain = 1e-3;
 /// Of the way of a stage: less is no step more.
 constexpr double rounding = 1e-9;
 
-/// Does the drive say how fast its walls go, whatever the grains do?
-bool is_given(const Drive& drive) {
-  return drive.control == Control::velocity || drive.control == Control::rate;
-}
-
 double target_of(const Drive& drive, double time) {
   if (drive.amplitude == 0) return drive.value;
   return drive.value + drive.amplitude * wave_at(drive.wave, time, drive.period);
@@ -49,13 +44,12 @@ Loading::Loading(const std::vector<Stage>& stages, const LoadingFrame& frame, co
   plan_stages();
 }
 
-/// Stages that are over, as they were foreseen at the start; the others from where the present one began.
-void Loading::plan_stages() {
-  planned_ = plan(stages_, frame_, travel_start_);
-  if (number_ == 0 || stage_ >= stages_.size()) return;
-  const std::vector<Stage> rest(stages_.begin() + static_cast<std::ptrdiff_t>(stage_), stages_.end());
-  const auto planned =
-      plan(rest, frame_, {frame_.start[0] - length_at_stage_[0], frame_.start[1] - length_at_stage_[1]});
+void Loading::plan_stages() { planned_ = plan(stages_, frame_, travel_start_); }
+
+/// The stages that are left, from where the present one began.
+void Loading::plan_rest() {
+  const auto planned = plan(std::span(stages_).subspan(stage_), frame_,
+                            {frame_.start[0] - length_at_stage_[0], frame_.start[1] - length_at_stage_[1]});
   std::copy(planned.begin(), planned.end(), planned_.begin() + static_cast<std::ptrdiff_t>(stage_));
 }
 
@@ -158,7 +152,7 @@ double Loading::speed_to_strain(const Drive& drive, const Box<2>& box, double ti
 double Loading::closing_speed(const Stage& stage, const Speeds& speeds, int component) const {
   double closing = 0;
   for (std::size_t d = 0; d < stage.drives.size(); ++d)
-    if (is_given(stage.drives[d]))
+    if (stage.drives[d].is_given())
       closing += closing_share(stage.drives[d].part, component, frame_.aspect) * speeds[d];
   return closing;
 }
@@ -168,7 +162,7 @@ void Loading::end_at_strain(const Stage& stage, const Box<2>& box, Speeds& speed
   for (int c = 0; c < 2; ++c) {
     if (!stage.until.strain[c] || closing_[c] == 0) continue;
     const bool alone = std::all_of(stage.drives.begin(), stage.drives.end(), [&](const Drive& drive) {
-      return is_given(drive) || closing_share(drive.part, c, 1) == 0 || drive.control == Control::rest;
+      return drive.is_given() || closing_share(drive.part, c, 1) == 0 || drive.control == Control::rest;
     });
     if (!alone) continue;
     const double to = frame_.travel(c, *stage.until.strain[c]), closing = closing_[c];
@@ -178,7 +172,7 @@ void Loading::end_at_strain(const Stage& stage, const Box<2>& box, Speeds& speed
     if (left * closing < 0 && !stage.towards) left = 0;  // the strain is past already
     last_of_stage_ = true;
     for (std::size_t d = 0; d < stage.drives.size(); ++d)
-      if (is_given(stage.drives[d])) speeds[d] = (left / dt) * (speeds[d] / closing);
+      if (stage.drives[d].is_given()) speeds[d] = (left / dt) * (speeds[d] / closing);
     return;
   }
 }
@@ -242,8 +236,8 @@ void Loading::watch(const Box<2>& box, double dt) {
   const double share = std::min(1.0, frame_.wall_velocity * dt / box.height() / averaging_strain);
   const auto on = [&](std::size_t wall) { return box.outward_impulse(wall); };
   const double below = dt * box.width(), beside = dt * box.height();
-  const OfParts stress{(on(0) + on(1)) / (2 * dt * box.width()),
-                       (on(2) + on(3)) / (2 * dt * box.height()),
+  const OfParts stress{(on(0) + on(1)) / (2 * below),
+                       (on(2) + on(3)) / (2 * beside),
                        on(0) / below,
                        on(1) / below,
                        on(2) / beside,
@@ -284,7 +278,7 @@ void Loading::begin_stage(const Box<2>& box, double time) {
   stage_start_ = time;
   stress_at_stage_ = stress_;
   for (int c = 0; c < 2; ++c) length_at_stage_[c] = length(box, c);
-  if (!motion_.velocity) plan_stages();
+  if (!motion_.velocity) plan_rest();
   held_ = {};
   const OfParts speed = press_speed_, force = press_force_, waiting = press_waiting_;
   press_speed_ = press_force_ = press_waiting_ = {};

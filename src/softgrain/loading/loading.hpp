@@ -109,6 +109,7 @@ class Loading {
   void visit_stresses(StateVisitor& visit);
   void visit_held(StateVisitor& visit);
   void plan_stages();
+  void plan_rest();
 
   LoadingOutcome outcome_of_limit() const;
   LoadingOutcome outcome_of_exits() const;

@@ -94,7 +94,10 @@ void Loading::visit(StateVisitor& visit) {
   visit_stage(visit);
   visit_stresses(visit);
   visit_held(visit);
-  if (visit.reads() && !motion_.velocity) plan_stages();
+  if (visit.reads() && !motion_.velocity) {
+    plan_stages();
+    if (number_ > 0 && stage_ < stages_.size()) plan_rest();
+  }
   const int stages = static_cast<int>(stages_.size());
   if (stage_ > stages_.size() || ended_ < End::none || ended_ > End::exhausted || unkept_stage_ >= stages ||
       unreached_stage_ >= stages || unkept_part_ < 0 || unkept_part_ >= static_cast<int>(number_of_parts) ||

@@ -99,7 +99,7 @@ std::int64_t PlannedStage::steps(double dt) const {
   return std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
 }
 
-std::vector<PlannedStage> plan(const std::vector<Stage>& stages, const LoadingFrame& frame,
+std::vector<PlannedStage> plan(std::span<const Stage> stages, const LoadingFrame& frame,
                                std::array<double, 2> travel) {
   Planner planner(frame, travel);
   std::vector<PlannedStage> planned;
@@ -110,7 +110,7 @@ std::vector<PlannedStage> plan(const std::vector<Stage>& stages, const LoadingFr
 std::optional<StrainLimit> limit_of(const Stage& stage, const std::array<double, 2>& strain_at_start) {
   if (stage.until.time || stage.until.strain[0] || stage.until.strain[1]) return std::nullopt;
   for (const Drive& drive : stage.drives) {
-    if ((drive.control != Control::velocity && drive.control != Control::rate) || drive.value == 0) continue;
+    if (!drive.is_given() || drive.value == 0) continue;
     const int component = 1 - axis_of(drive.part);
     const double start = strain_at_start[component];
     if (drive.value > 0) return StrainLimit{component, stage.limit.value_or(last_strain_together)};

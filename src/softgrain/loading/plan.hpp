@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "softgrain/loading/stage.hpp"
@@ -30,7 +31,7 @@ struct PlannedStage {
 
 /// Expected of each stage, with the walls so far from where strains count from [m]. A stage that ends at a
 /// stress is taken to go to its limit; what walls that keep a stress make of a strain is not foreseen.
-std::vector<PlannedStage> plan(const std::vector<Stage>& stages, const LoadingFrame& frame,
+std::vector<PlannedStage> plan(std::span<const Stage> stages, const LoadingFrame& frame,
                                std::array<double, 2> travel);
 
 /// A strain of a component.

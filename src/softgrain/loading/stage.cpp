@@ -39,9 +39,8 @@ std::string contradiction(const Stage& stage) {
 }
 
 bool moves_by_itself(const Stage& stage) {
-  return std::any_of(stage.drives.begin(), stage.drives.end(), [](const Drive& drive) {
-    return (drive.control == Control::velocity || drive.control == Control::rate) && drive.value != 0;
-  });
+  return std::any_of(stage.drives.begin(), stage.drives.end(),
+                     [](const Drive& drive) { return drive.is_given() && drive.value != 0; });
 }
 
 std::string endless(const Stage& stage) {

@@ -52,6 +52,8 @@ struct Drive {
   double period = 0;     ///< of the wave [s]
   Wave wave = Wave::sine;
 
+  /// Does it say how fast its walls go, whatever the grains do?
+  bool is_given() const { return control == Control::velocity || control == Control::rate; }
   friend bool operator==(const Drive&, const Drive&) = default;
 };
 

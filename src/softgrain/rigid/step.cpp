@@ -27,6 +27,7 @@ RigidDynamics<Dim>::RigidDynamics(RigidParticles<Dim> bodies, FrictionRule frict
       law.restitution);
   require(skin > 0, "skin must be > 0, got {} m", skin);
   reference.skin = skin;
+  pressed_.resize(particles.walls.size());
   if (particles.size() > 0)
     mean_radius_ = std::accumulate(particles.radius.begin(), particles.radius.end(), 0.0) / particles.size();
 }
@@ -61,8 +62,7 @@ void RigidDynamics<Dim>::list_pressed_walls() {
   std::vector<bool> pressed;
   for (int w = 0; w < static_cast<int>(particles.walls.size()); ++w)
     pressed.push_back(particles.press_share(particles.wall_body(w)) != 0);
-  const bool changed = std::find(pressed.begin(), pressed.end(), true) != pressed.end() || !pressed_.empty();
-  if (!changed || pressed == pressed_) return;
+  if (pressed == pressed_) return;
   pressed_ = std::move(pressed);
   if (reference.made.empty()) return;
   reference.made.back() = ++reference.generation;

@@ -196,11 +196,7 @@ Violation ElasticContacts::sweep(std::span<Vec<2>> impulse, std::span<const doub
 
 void ElasticContacts::extrapolate(double b) {
   before_.resize(velocity_.size());
-  for (std::size_t i = 0; i < velocity_.size(); ++i) {
-    const double v = velocity_[i];
-    if (b > 0) velocity_[i] += b * (v - before_[i]);
-    before_[i] = v;
-  }
+  for (std::size_t i = 0; i < velocity_.size(); ++i) softgrain::extrapolate(velocity_[i], before_[i], b);
   if (pushed_) pushed_->extrapolate(b);
 }
 
