@@ -111,7 +111,7 @@ TEST_CASE("softgrain run never overwrites its own case file") {
 TEST_CASE("a run stopped by signals and resumed equals the one that was not, to the last bit") {
   const TemporaryDirectory directory;
   directory.file("small.toml", small_case);
-  const std::vector<std::string> longer{"--set", "loading.max_strain=0.1", "-q"};
+  const std::vector<std::string> longer{"--set", "loading.max_strain=0.5", "--set", "time.step=0.1e-6", "-q"};
   const auto with = [&](std::vector<std::string> words) {
     words.insert(words.end(), longer.begin(), longer.end());
     return words;
@@ -123,7 +123,7 @@ TEST_CASE("a run stopped by signals and resumed equals the one that was not, to 
   CHECK(first.wait().exit_code == 130);
   CHECK(state_of(directory.path() / "parts") == "stopped");
   Process second(command({"resume", "parts"}), {}, directory.path().string());
-  usleep(100000);
+  for (int k = 0; k < 2000 && state_of(directory.path() / "parts") != "running"; ++k) usleep(5000);
   second.send(SIGTERM);
   CHECK(second.wait().exit_code == 75);
   CHECK(softgrain_run(directory, with({"run", "small.toml", "-o", "parts", "--resume"})).exit_code == 0);
@@ -137,6 +137,7 @@ TEST_CASE("a second run in the same directory exits 2 and names the first one's 
   const std::vector<std::string> words{"run", "small.toml", "-o", "out", "--set", "loading.max_strain=0.5"};
   Process first(command(words), {}, directory.path().string());
   wait_for_start(directory.path() / "out");
+  first.send(SIGSTOP);  // it must not end before the others have looked at it
   const auto second = softgrain_run(directory, words);
   CHECK(second.exit_code == 2);
   CHECK(second.err.find("in use by another run, process ") != std::string::npos);
