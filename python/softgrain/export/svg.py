@@ -49,8 +49,10 @@ def write_svg(snapshot, scale, file):
     if scale.force and not (picture.is_elastic(snapshot) and len(snapshot.body_radii()) < 2):
         colour = scale.colour.chains if scale.colour else colours.CHAINS
         file.writelines(_chains(picture.chains(snapshot, scale.force), colour, place, pixels))
-    for wall in snapshot.walls:
-        file.write(_line(place(wall.reshape(2, 2)), 'stroke-width="3"'))
+    for wall in picture.walls(snapshot):
+        file.write(_line(place(wall), 'stroke-width="3"'))
+    for edge in picture.cell_edges(snapshot):
+        file.write(_line(place(edge), 'stroke-width="1" stroke-dasharray="6 4"'))
     if scale.colour:
         file.writelines(_legend(scale.colour, MARGIN * WIDTH, height))
     file.write("</svg>\n")

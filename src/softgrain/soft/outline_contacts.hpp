@@ -56,11 +56,11 @@ struct OutlineContact {
 struct OutlineState {
   std::vector<Vec<2>> position, start;  ///< (outline vertices) [m]
   std::vector<Wall<2>> walls;           ///< with their points at the end of the step
-  PeriodicCell<2> cell;                 ///< at the end of the step
   double dt = 0;                        ///< [s]
   /// Share of the step at which pairs take place and normal: half-way contact gives no energy; 1 where the
   /// step is quasi-static and its end must be an equilibrium (docs/decisions/0026).
   double normals_at = 0.5;
+  PeriodicCell<2> cell{};  ///< at the end of the step
 };
 
 /// Finds the contacts of outlines: which grains a vertex may meet is looked up among cells, and kept until
