@@ -87,11 +87,13 @@ Observation Simulation::observe() const {
                   .leg = loading_.number(),
                   .height = box_.height(),
                   .wall_force = row_.impulse,
+                  .shear = {},
                   .packing = {},
                   .energies = energies(),
                   .numbers = model_->numbers(box_),
                   .means = {}};
   for (double& force : now.wall_force) force /= row_.duration > 0 ? row_.duration : dt_;
+  if (box_.cell.any()) now.shear = box_.shear;
   if (box_.closed()) {
     now.width = box_.width();
     now.packing = packing();
