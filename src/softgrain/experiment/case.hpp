@@ -20,7 +20,7 @@ enum class LoadingPath {
   compaction,  ///< grains in a box whose top wall comes down
   isotropic,   ///< grains in a box whose four walls come in
   biaxial,     ///< isotropic to a stress, then top and bottom wall come in while the side walls keep it
-  die,         ///< the top wall presses grains in a box, keeps the stress, and leaves
+  die,         ///< the top wall presses grains in a box, keeps the stress, and leaves; the sides open
   relaxation,  ///< compaction, then rest
   stages,      ///< grains in a box, along stages of one's own
 };
@@ -95,7 +95,8 @@ struct Case {
     double hold = 0;                  ///< rest of the wall at each turn and at the end [s]
     double hold_stress = 0;           ///< sigma that walls keep for `hold` before the end [Pa]; 0: none
     double confining_stress = 0;      ///< of the side walls of a biaxial path [Pa]
-    double rest = 0;  ///< kinetic over stored energy that ends the rest of a relaxation; 0: none
+    double rest = 0;   ///< kinetic over stored energy that ends the rest of a relaxation; 0: none
+    double eject = 0;  ///< strain of xx by which the side walls of a die open after unloading; 0: they stay
   } loading;
 
   std::vector<Stage> stages{};  ///< of one's own, instead of those of a short form

@@ -97,8 +97,14 @@ std::vector<Stage> die(const Case& c) {
       .name = "hold", .drives = {keeps(Part::top, stress)}, .until = {.time = c.loading.hold}, .key = key};
   Stage unload{.name = "unload", .drives = {at_velocity(Part::top, -v)}};
   unload.until.stress[top] = 0;
-  if (c.loading.hold == 0) return {press, unload};
-  return {press, hold, unload};
+  std::vector<Stage> stages{press, hold, unload};
+  if (c.loading.eject > 0) {
+    Stage eject{.name = "eject", .drives = {at_velocity(Part::xx, -v), at_velocity(Part::top, -v)}};
+    eject.until.strain[1] = -c.loading.eject;
+    stages.insert(stages.end(), {eject, rest(c.loading.hold)});
+  }
+  if (c.loading.hold == 0) std::erase_if(stages, [](const Stage& stage) { return stage.until.time == 0; });
+  return stages;
 }
 
 std::vector<Stage> relaxation(const Case& c) {

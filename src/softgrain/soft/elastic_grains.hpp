@@ -22,6 +22,8 @@ class ElasticGrains final : public Model {
   std::unique_ptr<Model> copy() const override { return std::make_unique<ElasticGrains>(*this); }
   StepReport step(Box<2>& box, double dt) override;
   void visit(StateVisitor& visit) override;
+  Settings settings() const override;
+  void set(const Settings& settings) override;
   void begin_row() override { sums_.steps = sums_.iterations = 0; }
 
   double density() const override { return dynamics_.grains.density; }

@@ -50,6 +50,38 @@ TEST_CASE("a die presses with its top wall to a stress, keeps it, and lets go") 
   CHECK(weak.loading.outcome().shortfall.find("was not reached by strain 0.05") != std::string::npos);
 }
 
+TEST_CASE("a die ejects: after unloading the sides and the top open, and all walls rest") {
+  const auto ejecting = [](double hold) {
+    return run_of({.wall_velocity = v,
+                   .max_strain = 0.3,
+                   .max_stress = target,
+                   .unload_at = {},
+                   .hold = hold,
+                   .eject = 0.05},
+                  LoadingPath::die);
+  };
+  SpringRun run = ejecting(5e-3);
+  for (int stage = 0; stage < 3; ++stage) run.finish_stage();
+  const double height = run.box.height(), width = run.box.width();
+  CHECK(width == 20e-3);
+  CHECK(std::abs(run.stress(1)) < 0.01 * target);
+  run.finish_stage();
+  CHECK(run.box.width() / (width * std::exp(0.05)) == doctest::Approx(1).epsilon(1e-9));
+  CHECK(run.box.walls[left_wall].point[0] == doctest::Approx(-(run.box.width() - width) / 2));
+  CHECK(run.box.height() - height == doctest::Approx(run.box.width() - width).epsilon(0.01));
+  CHECK(run.box.walls[bottom_wall].point == Vec<2>{0, 0});
+  CHECK_FALSE(run.loading.finished());
+  const double open = run.box.height(), start = run.time();
+  run.finish();
+  CHECK(run.time() - start == doctest::Approx(5e-3));
+  CHECK(run.box.height() == open);
+  CHECK(run.loading.outcome().completed);
+  SpringRun without_rest = ejecting(0);
+  without_rest.finish();
+  CHECK(without_rest.loading.number() == 2);
+  CHECK(without_rest.box.width() / (width * std::exp(0.05)) == doctest::Approx(1).epsilon(1e-9));
+}
+
 TEST_CASE("a relaxation compacts, and rests until its time is over or the grains are at rest") {
   for (const bool at_rest : {false, true}) {
     SpringRun run =

@@ -115,9 +115,6 @@ TEST_CASE("what comes with later versions is refused by key and line, and says w
                 "5:18", "today it is 0");
   check_not_yet("[[kind]]\nname = 'a'\n[[pair]]\nbetween = ['a', 'bottom']\n", "4:1", "is all of them");
   check_not_yet("[[stage]]\nxy = { velocity = 1 }\n", "2:1", "walls do not shear");
-  check_not_yet(
-      "[[stage]]\nyy = { velocity = 1 }\nuntil = { strain = 0.1 }\nset = { 'pair.friction' = 0.3 }\n", "4:1",
-      "hold for the whole run");
 }
 
 TEST_CASE("mistakes in the long form are told with line, column and remedy") {
