@@ -95,8 +95,8 @@ struct Case {
     double hold = 0;                  ///< rest of the wall at each turn and at the end [s]
     double hold_stress = 0;           ///< sigma that walls keep for `hold` before the end [Pa]; 0: none
     double confining_stress = 0;      ///< of the side walls of a biaxial path [Pa]
-    double rest = 0;   ///< kinetic over stored energy that ends the rest of a relaxation; 0: none
-    double eject = 0;  ///< strain of xx by which the side walls of a die open after unloading; 0: they stay
+    double rest = 0;     ///< kinetic over stored energy that ends the rest of a relaxation; 0: none
+    bool eject = false;  ///< whether the side walls of a die open after unloading, until they bear nothing
   } loading;
 
   std::vector<Stage> stages{};  ///< of one's own, instead of those of a short form

@@ -9,7 +9,8 @@
 namespace softgrain {
 namespace {
 
-constexpr auto yy = static_cast<std::size_t>(Part::yy), top = static_cast<std::size_t>(Part::top);
+constexpr auto yy = static_cast<std::size_t>(Part::yy), xx = static_cast<std::size_t>(Part::xx),
+               top = static_cast<std::size_t>(Part::top);
 
 Drive at_velocity(Part part, double velocity) {
   return {.part = part, .control = Control::velocity, .value = velocity};
@@ -98,10 +99,11 @@ std::vector<Stage> die(const Case& c) {
   Stage unload{.name = "unload", .drives = {at_velocity(Part::top, -v)}};
   unload.until.stress[top] = 0;
   std::vector<Stage> stages{press, hold, unload};
-  if (c.loading.eject > 0) {
-    Stage eject{.name = "eject", .drives = {at_velocity(Part::xx, -v), at_velocity(Part::top, -v)}};
-    eject.until.strain[1] = -c.loading.eject;
-    stages.insert(stages.end(), {eject, rest(c.loading.hold)});
+  if (c.loading.eject) {
+    Stage eject{.name = "eject", .drives = {at_velocity(Part::xx, -v)}}, lift = unload;
+    eject.until.stress[xx] = 0;
+    lift.name = "lift";
+    stages.insert(stages.end(), {eject, lift, rest(c.loading.hold)});
   }
   if (c.loading.hold == 0) std::erase_if(stages, [](const Stage& stage) { return stage.until.time == 0; });
   return stages;

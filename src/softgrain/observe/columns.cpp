@@ -60,8 +60,6 @@ constexpr std::array table{
         [](const Observation& o) { return o.packing ? Value(ratio_to(o.wall_force[1], o.wall_force[0])) : std::nullopt; }},
     Column{"radial_ratio", "", boxes, "`stress_side` over the mean of `stress_bottom` and `stress_top`: radial over axial stress of a die. 0 while nothing presses",
         [](const Observation& o) { return o.packing ? Value(ratio_to((o.wall_force[0] + o.wall_force[1]) / 2 * o.height, *mean_side_force(o) * o.width)) : std::nullopt; }},
-    Column{"extent_x", "m", boxes, "width of all grains together, from the first to the last point of their outlines: the compact, also when no wall touches it", NUMBER("extent_x")},
-    Column{"extent_y", "m", boxes, "their height", NUMBER("extent_y")},
     Column{"force_bottom", "N/m", every_run, "outward force on the bottom wall: impulses of the steps since the row before over their time", force_on<0>},
     Column{"force_top", "N/m", every_run, "the same of the top wall", force_on<1>},
     Column{"sigma_I", "Pa", bonded, R"($F_0/\langle a_0\rangle$, the internal cohesive pressure by which stresses are scaled (16))", NUMBER("sigma_I")},

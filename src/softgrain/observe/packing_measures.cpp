@@ -1,7 +1,5 @@
 #include "softgrain/observe/packing_measures.hpp"
 
-#include <algorithm>
-#include <limits>
 #include <vector>
 
 #include "softgrain/observe/energy.hpp"
@@ -32,10 +30,6 @@ PackingMeasures measure_packing(const PackingView& packing) {
     aspect_ratio += shape.aspect_ratio / grains;
     diameter += 2 * packing.radius[g] / grains;
   }
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  Vec<2> low{infinite, infinite}, high{-infinite, -infinite};
-  for (const Vec<2>& x : packing.outline)
-    for (int k = 0; k < 2; ++k) low[k] = std::min(low[k], x[k]), high[k] = std::max(high[k], x[k]);
   const bool touching = !network.pairs.empty() || !network.walls.empty();
   const double pressure = touching ? trace(measures.stress) / 2 : 0;
   measures.numbers = {
@@ -43,9 +37,7 @@ PackingMeasures measure_packing(const PackingView& packing) {
       {"stress_kinetic", trace(motion) / 2},
       {"inertial_number", inertial_number(packing.strain_rate, diameter, packing.density, pressure)},
       {"circularity", circularity},
-      {"aspect_ratio", aspect_ratio},
-      {"extent_x", high[0] - low[0]},
-      {"extent_y", high[1] - low[1]}};
+      {"aspect_ratio", aspect_ratio}};
   return measures;
 }
 

@@ -132,7 +132,7 @@ std::vector<Key> all_keys() {
           "isotropic: xx and yy each; 0: none (in a box)", packing_turning),
       KEY(loading.confining_stress, "MPa", at_least(0), "that the side walls keep (biaxial)", biaxial),
       KEY(loading.rest, "", at_least(0), "kinetic over stored energy, below which the rest ends before loading.hold is over; 0: none (relaxation)", relaxing),
-      KEY(loading.eject, "", from_to(0, 1), "strain of xx by which the side walls open after unloading, and the top wall with them, at loading.wall_velocity, so that the compact is free; then all rest for loading.hold; 0: they stay (die)", die),
+      KEY(loading.eject, "", anything(), "whether the side walls go apart after unloading until they bear nothing, then the top wall again, and all rest for loading.hold (die)", die),
 
       KEY(time.step, "us", at_least(0),
           "time step dt; auto: bpm: a 43rd of the period of the bonds between the smallest primaries; implicit mpm: the "

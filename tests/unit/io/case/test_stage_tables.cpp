@@ -180,7 +180,7 @@ TEST_CASE("a short form says what it needs, and keys of other paths are without 
   CHECK(mentions(refusal(path("die")), "needs loading.max_stress > 0"));
   CHECK(mentions(refusal(path("relaxation")), "needs loading.hold > 0"));
   CHECK(refusal(path("biaxial", "confining_stress = 1e5\n")).empty());
-  CHECK(refusal(path("die", "max_stress = 1e5\neject = 0.05\n")).empty());
+  CHECK(refusal(path("die", "max_stress = 1e5\neject = true\n")).empty());
   CHECK(refusal(path("relaxation", "hold = 1e-3\nrest = 1e-4\n")).empty());
   const CaseReading reading = parse_case_with_notes(
       path("die", "max_stress = 1e5\nconfining_stress = 1e5\nunload_at = [0.1]\n"), "case.toml");
