@@ -100,7 +100,7 @@ def _finish(figure, axes, fit):
     low, high = (pressure / 1e6 for pressure in fit.window)
     axes.axvspan(low, high, color=GREY, alpha=0.12, lw=0, label=f"fitted from {low:.3g} to {high:.3g} MPa; ±: 95 % intervals")
     lines = sum(1 + label.count("\n") for label in axes.get_legend_handles_labels()[1])
-    millimetres(figure, LEFT, RIGHT, BOTTOM, KEY_LINE * lines + 1)
+    millimetres(figure, LEFT, RIGHT, BOTTOM, KEY_LINE * lines + 2)
     axes.legend(loc="lower left", bbox_to_anchor=(-(LEFT - 1) / (SINGLE_COLUMN - LEFT - RIGHT), 1), borderaxespad=0.2, borderpad=0,
                 handletextpad=0.5)
     return figure

@@ -22,6 +22,9 @@ Stage rest(double time) { return {.name = "rest", .until = {.time = time}}; }
 /// Of top and bottom wall: side walls of a biaxial path, which make room for a box that flattens.
 constexpr double side_speed = 5;
 
+/// Strain by which the sides of a die open at most.
+constexpr double most_opened = 0.1;
+
 /// What a short form leaves its path for.
 std::vector<Exit> exits_of(const Case& c) {
   std::vector<Exit> exits;
@@ -102,7 +105,9 @@ std::vector<Stage> die(const Case& c) {
   if (c.loading.eject) {
     Stage eject{.name = "eject", .drives = {at_velocity(Part::xx, -v)}}, lift = unload;
     eject.until.stress[xx] = 0;
+    eject.limit = -most_opened;
     lift.name = "lift";
+    lift.limit = -most_opened / 2;
     stages.insert(stages.end(), {eject, lift, rest(c.loading.hold)});
   }
   if (c.loading.hold == 0) std::erase_if(stages, [](const Stage& stage) { return stage.until.time == 0; });

@@ -138,6 +138,27 @@ TEST_CASE("a state of any stage goes on with the settings of that stage, whateve
   }
 }
 
+TEST_CASE("a run that begins from another has the settings of its own case and first stage") {
+  for (const GrainModel model : {GrainModel::bpm, GrainModel::mpm}) {
+    CAPTURE(model);
+    Simulation first = test::simulation_of(pressed(model, everything));
+    to_next_stage(first);
+    test::advance(first, 20);
+    Case c = with(pressed(model, {}), {.wall_friction = 0.1});
+    for (Stage& stage : c.stages) stage.until.strain[0] = *stage.until.strain[0] + 0.05;
+    c.stages[0].set.friction = 0.2;
+    Simulation second = test::simulation_of(c);
+    second.begin_from(first.checkpoint());
+    CHECK(second.model().settings().friction == 0.2);
+    CHECK(second.model().settings().wall_friction == 0.1);
+    test::advance(second, 30);
+    Simulation third = test::simulation_of(c);
+    third.restore(second.checkpoint());
+    while (!second.finished()) second.step(), third.step();
+    check_same(second, third);
+  }
+}
+
 TEST_CASE("what stages set adds up, also where stages are repeated") {
   Case c = pressed(GrainModel::mpm, {.friction = 0.4}, {.damping = 7});
   c.stages[0].name = "first";

@@ -85,6 +85,11 @@ TEST_CASE("a die ejects: after unloading the sides go apart until they bear noth
   CHECK(run.box.walls[bottom_wall].point == Vec<2>{0, 0});
   CHECK(run.loading.outcome().completed);
   CHECK(run.loading.outcome().shortfall.empty());
+  SpringRun swollen = ejecting(0);
+  swollen.model.loss[0] = -1.5 * target;
+  swollen.finish();
+  CHECK(swollen.loading.outcome().shortfall.starts_with(
+      "stage 'eject': stress_xx of 0 Pa was not reached by strain -0.1"));
   SpringRun without_rest = ejecting(0);
   without_rest.finish();
   CHECK(without_rest.loading.number() == 3);
