@@ -7,7 +7,8 @@ import numpy as np
 from .run import NotRecorded
 
 WALL_STRESSES = ("stress_top", "stress_bottom")
-LOADING, UNLOADING, RELOADING = "loading", "unloading", "reloading"
+LOADING, UNLOADING, RELOADING, HOLD = "loading", "unloading", "reloading", "hold"
+HELD_STRAIN, HELD_STRESS = 0.01, 0.2  # a hold strays by less: over all strain of the run, over its mean stress
 
 
 class Branch(NamedTuple):
@@ -42,8 +43,25 @@ def vertical_stress(series):
     return np.mean(walls, axis=0)
 
 
-def branches(strain):
-    """Cuts a strain history into loading (beyond every strain before), unloading and reloading branches.
+def held(series):
+    """Of each step from one sample to the next whether its stage only holds: strain and stress, or the strain alone."""
+    strain = series["strain"]
+    still = np.zeros(max(strain.size - 1, 0), dtype=bool)
+    if "leg" not in series or not any(name in series for name in WALL_STRESSES):
+        return still
+    leg, stress = series["leg"], vertical_stress(series)
+    for number in np.unique(leg):
+        rows = np.flatnonzero(leg == number)
+        way, load = np.ptp(strain[rows]), stress[rows]
+        is_kept = way < HELD_STRAIN * np.ptp(strain) and np.ptp(load) < HELD_STRESS * abs(load.mean())
+        if rows.size > 1 and (way == 0 or is_kept):
+            still[max(rows[0] - 1, 0) : rows[-1]] = True
+    return still
+
+
+def branches(strain, still=None):
+    """Cuts a strain history into loading (beyond every strain before), unloading and reloading branches, and holds
+    where `still` says so of a step.
 
     Neighbouring branches share the sample where one ends and the next begins."""
     strain = np.asarray(strain)
@@ -53,15 +71,22 @@ def branches(strain):
     going_down = np.diff(strain) < 0
     beyond = strain[1:] > reached
     kinds = np.where(going_down, UNLOADING, np.where(beyond, LOADING, RELOADING))
+    if still is not None:
+        kinds = np.where(still, HOLD, kinds)
     cuts = np.flatnonzero(kinds[1:] != kinds[:-1]) + 1
     ends = [0, *cuts, kinds.size]
     return [Branch(str(kinds[a]), int(a), int(b)) for a, b in zip(ends, ends[1:])]
 
 
+def is_envelope(strain):
+    """Which samples are at strains never reached before."""
+    return np.append(True, strain[1:] > np.maximum.accumulate(strain)[:-1])
+
+
 def envelope(strain, stress):
     """The samples at strains never reached before: (strain, stress), strain increasing."""
     strain, stress = np.asarray(strain), np.asarray(stress)
-    first_visit = np.append(True, strain[1:] > np.maximum.accumulate(strain)[:-1])
+    first_visit = is_envelope(strain)
     return strain[first_visit], stress[first_visit]
 
 
@@ -86,11 +111,11 @@ def plateau(strain, stress, start=0.05):
     return Plateau(stress[plastic].mean(), stress[plastic].std(), (strain[plastic][0], strain[-1]))
 
 
-def unloadings(strain, stress):
-    """Each unloading; its slope is fitted from where the stress first falls below 80 % of that at the start
+def unloadings(strain, stress, still=None):
+    """Each unloading, `still` as of `branches`; its slope is fitted from where the stress first falls below 80 % of that at the start
     to where it is last above 20 %."""
     found = []
-    for branch in branches(strain):
+    for branch in branches(strain, still):
         if branch.kind != UNLOADING:
             continue
         eps, sigma = strain[branch.samples], stress[branch.samples]

@@ -198,6 +198,18 @@ class Plots:
         """What the solver and the energies did."""
         return self._draw("draw_diagnostics", self.run)
 
+    def die(self):
+        """Stresses on the walls of a die and their ratios; elastic recovery."""
+        return self._draw("draw_die", self.run)
+
+    def heckel(self, window: tuple[float, float] | None = None):
+        """Heckel's line and Panelli and Ambrozio's curve, over a window of pressures [Pa]."""
+        return self._draw("draw_heckel", self.run, window)
+
+    def kawakita(self, window: tuple[float, float] | None = None):
+        """Kawakita's line, over a window of pressures [Pa]."""
+        return self._draw("draw_kawakita", self.run, window)
+
     def _draw(self, name, *arguments, **options):
         from . import plot
 

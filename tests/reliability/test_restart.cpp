@@ -34,6 +34,37 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a run whose stages set friction, tolerance and damping goes on from any snapshot, to the bit") {
+  for (const std::string model : {"mpm", "bpm"}) {
+    CAPTURE(model);
+    const Workshop workshop;
+    const std::string set =
+        model == "mpm" ? "mpm = { damping = 100, tolerance = 1e-5 }" : "solver.tolerance = 1e-6";
+    workshop.file("case.toml",
+                  "[experiment]\nmodel = '" + model +
+                      "'\n[sample]\ngrains = 6\npacking_fraction = 0.62\n[bpm]\nprimaries = "
+                      "25\nlibrary = 1\n[mpm]\ncells = 4\n[output]\nsamples = 20\nsnapshots = "
+                      "6\nreport = false\n[[stage]]\nyy = { velocity = '5 m/s' }\nuntil.strain = "
+                      "0.25\n[[stage]]\nyy = { velocity = '5 m/s' }\nuntil.strain = 0.3\nset = { "
+                      "contact.friction = 0.3, contact.wall_friction = 0.2, " +
+                      set +
+                      " }\n[[stage]]\nyy = { velocity = '-5 m/s' }\nuntil.strain = 0.28\nset = { "
+                      "contact.friction = 0 }\n");
+    const ProcessResult whole = workshop.softgrain({"run", "case.toml", "-q", "-o", "whole", "-j", "1"});
+    CAPTURE(whole.err);
+    REQUIRE(whole.exit_code == 0);
+    const std::size_t snapshots = workshop.snapshots("whole").size();
+    REQUIRE(snapshots == 9);
+    for (std::size_t kept = 1; kept < snapshots; ++kept) {
+      const std::string part = "part" + std::to_string(kept);
+      CAPTURE(part);
+      copy_cut_off(workshop, "whole", part, kept);
+      CHECK(workshop.softgrain({"resume", part, "-q", "-j", "3"}).exit_code == 0);
+      CHECK(same_runs(workshop, part, "whole"));
+    }
+  }
+}
+
 TEST_CASE("a run that stops wherever its time is up and goes on, many times, is the run that did not") {
   for (const std::string name : {"diametral-bpm", "compaction-mpm"}) {
     CAPTURE(name);

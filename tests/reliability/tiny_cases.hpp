@@ -25,7 +25,8 @@ inline Words tiny_path(const std::string& name) {
   Words settings{"output.samples=20", "output.snapshots=6",   "output.report=false",   "sample.grains=6",
                  "mpm.cells=4",       "contact.friction=0.3", "loading.max_strain=0.3"};
   const auto add = [&](const Words& more) { settings.insert(settings.end(), more.begin(), more.end()); };
-  if (name == "die") add({"loading.wall_velocity=\"1 m/s\"", "loading.max_stress=\"0.3 MPa\""});
+  if (name == "die" || name == "tablet")
+    add({"loading.wall_velocity=\"1 m/s\"", "loading.max_stress=\"0.3 MPa\"", "loading.max_strain=0.5"});
   if (name == "biaxial")
     add({"loading.wall_velocity=\"0.05 m/s\"", "loading.hold=\"40 ms\"", "loading.max_strain=0.12"});
   if (name == "relaxation")
@@ -71,7 +72,9 @@ inline std::vector<TinyCase> tiny_cases() {
     const std::string name = entry.path().filename().string();
     const std::string source = (entry.path() / "case.toml").string();
     if (!fs::exists(source)) continue;
-    if (name == "die" || name == "biaxial" || name == "relaxation" || name == "shear")
+    if (name == "die" || name == "tablet")
+      cases.push_back({name, source, tiny_path(name), 5});
+    else if (name == "biaxial" || name == "relaxation" || name == "shear")
       cases.push_back({name, source, tiny_path(name), name == "relaxation" ? 1U : 2U});
     else
       cases.push_back({name, source, tiny_settings(name)});

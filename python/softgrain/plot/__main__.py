@@ -7,12 +7,14 @@ import softgrain
 from softgrain import plot
 from softgrain.options import parse
 
+KINDS_OF_DIE = ("die", "heckel", "kawakita")
 USAGE_ERROR, IO_ERROR = 2, 4  # exit codes, those of the program `softgrain`
 
 
 def draw(options):
     """Draws and saves every figure asked for; returns the paths. Names those that the data do not allow."""
     runs = [softgrain.open(path) for path in options.dir]
+    window = window_of(options.window)
     names = distinct_names(runs)
     figures = {"curve": (runs, lambda: plot.draw_curve(runs, names, options.normalise))}
     if any({"phi", "z"} <= run.series.keys() for run in runs) or options.kind == "packing":
@@ -21,6 +23,10 @@ def draw(options):
         suffix = "" if len(runs) == 1 else "-" + name.replace("/", "-")
         figures["grain" + suffix] = ([run], lambda run=run: plot.draw_grain(run))
         figures["diagnostics" + suffix] = ([run], lambda run=run: plot.draw_diagnostics(run))
+        if options.kind in KINDS_OF_DIE or run.case.get("experiment", {}).get("loading") == "die":
+            figures["die" + suffix] = ([run], lambda run=run: plot.draw_die(run))
+            figures["heckel" + suffix] = ([run], lambda run=run: plot.draw_heckel(run, window))
+            figures["kawakita" + suffix] = ([run], lambda run=run: plot.draw_kawakita(run, window))
 
     beside = runs[0].path if len(runs) == 1 else Path()
     folder = Path(options.output) if options.output else beside / "figures"
@@ -37,6 +43,19 @@ def draw(options):
         except softgrain.NotRecorded as missing:
             print(f"softgrain plot: no {name}: {missing}", file=sys.stderr)
     return paths
+
+
+def window_of(word):
+    """"0.05:0.2" in MPa as two pressures [Pa]; None for none. Raises ValueError."""
+    if word is None:
+        return None
+    try:
+        low, high = (1e6 * float(bound) for bound in word.split(":"))
+    except ValueError:
+        low = high = 0.0
+    if not 0 <= low < high:
+        raise ValueError(f"--window takes two pressures in MPa, the lower first, as in 0.05:0.2; got {word}")
+    return low, high
 
 
 def distinct_names(runs):

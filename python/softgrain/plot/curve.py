@@ -7,11 +7,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import NotRecorded, measure
-from .style import BLUE, GREEN, GREY, INK, MM, RUN_COLOURS, SINGLE_COLUMN, VERMILLION, millimetres
+from .style import BLUE, GREEN, GREY, INK, MM, PURPLE, RUN_COLOURS, SINGLE_COLUMN, VERMILLION, millimetres
 
 HEIGHT = 62  # [mm]
 LEFT, RIGHT, BOTTOM, KEY_LINE = 12, 2.5, 9.5, 4  # margins; above, a line of the key for each curve [mm]
-BRANCH_COLOURS = {measure.UNLOADING: VERMILLION, measure.RELOADING: GREEN}
+BRANCH_COLOURS = {measure.UNLOADING: VERMILLION, measure.RELOADING: GREEN, measure.HOLD: PURPLE}
 
 
 @dataclass(frozen=True)
@@ -24,6 +24,7 @@ class Curve:
     scale: float  # 1 MPa, or sigma_I [Pa]
     characteristic_stress: float | None  # sigma_I [Pa]
     plateau: measure.Plateau | None  # of a bonded grain between walls; all other stresses rise all the way
+    still: np.ndarray | None = None  # of each step from a sample to the next whether its stage only holds
     elastic_grain: bool = False  # one grain, which unloads as it was loaded and is smooth
 
 
@@ -64,7 +65,7 @@ def _curve(run, label, normalise):
     scale = sigma_i if normalise else 1e6
     strain, packing = run.series["strain"], "phi" in run.series
     flat = None if packing or run.elastic else measure.plateau(strain, stress / scale)
-    return Curve(label, strain, stress / scale, scale, sigma_i, flat, run.elastic and not packing)
+    return Curve(label, strain, stress / scale, scale, sigma_i, flat, measure.held(run.series), run.elastic and not packing)
 
 
 def _common_characteristic_stress(curves):
@@ -103,7 +104,7 @@ def _mark_break(below, above):
 def _draw_branches(axes, curve):
     """One run: each kind of branch in its colour; the plateau and the unloading slopes in words."""
     strain, stress = curve.strain, curve.stress
-    branches = measure.branches(strain)
+    branches = measure.branches(strain, curve.still)
     eps, sigma = measure.envelope(strain, stress)
     if curve.elastic_grain and _follows(strain, stress, eps, sigma):
         axes.plot(eps, sigma, color=BLUE, lw=1.3, label="loading" + (", unloading the same" if len(branches) > 1 else ""))
@@ -137,7 +138,7 @@ def _draw_plateau(axes, curve):
 
 def _slopes(curve):
     """", slope 3.6 MPa" of each unloading; elastic grains unload as they were loaded."""
-    slopes = [] if curve.elastic_grain else [unloading.slope for unloading in measure.unloadings(curve.strain, curve.stress)]
+    slopes = [] if curve.elastic_grain else [unloading.slope for unloading in measure.unloadings(curve.strain, curve.stress, curve.still)]
     unit = r"$\,\sigma_I$" if curve.scale == curve.characteristic_stress else " MPa"
     words = ", ".join(f"{slope:.{1 if slope < 10 else 0}f}" for slope in slopes)
     return f", slope{'s' if len(slopes) > 1 else ''} {words}{unit}" if slopes else ""

@@ -46,9 +46,11 @@ BondedGrains::BondedGrains(BondedGrainsSetup setup)
     : grain_radius_(std::move(setup.grain_radius)),
       density_(setup.density),
       sigma_I_(setup.sigma_I),
+      friction_(setup.friction),
       attraction_(std::move(setup.laws)),
-      dynamics_(std::move(setup.particles), std::move(setup.friction), setup.options, setup.skin),
+      dynamics_(std::move(setup.particles), {}, setup.options, setup.skin),
       most_sweeps_(setup.options.solver.max_sweeps) {
+  dynamics_.set_friction(friction_.rule(dynamics_.particles.grain));
   set_reference(dynamics_.reference, dynamics_.particles);
   dynamics_.rebuild_contacts();
   attraction_.update(dynamics_.particles, dynamics_.reference);
@@ -284,6 +286,21 @@ void BondedGrains::visit(StateVisitor& visit) {
     dynamics_.rebuild_contacts();
   }
   visit_impulses(dynamics_.contacts, visit);
+}
+
+Settings BondedGrains::settings() const {
+  return {.friction = friction_.between,
+          .wall_friction = friction_.wall,
+          .solver_tolerance = dynamics_.options.solver.tolerance};
+}
+
+void BondedGrains::set(const Settings& settings) {
+  double& tolerance = dynamics_.options.solver.tolerance;
+  tolerance = settings.solver_tolerance.value_or(tolerance);
+  const FrictionOfPrimaries before = friction_;
+  friction_.between = settings.friction.value_or(before.between);
+  friction_.wall = settings.wall_friction.value_or(before.wall);
+  if (friction_ != before) dynamics_.set_friction(friction_.rule(dynamics_.particles.grain));
 }
 
 void BondedGrains::go_on(const Box<2>& box) {

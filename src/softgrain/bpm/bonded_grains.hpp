@@ -12,12 +12,26 @@
 
 namespace softgrain {
 
+/// Coefficients of friction mu: between primaries of one grain, of two, and against walls.
+struct FrictionOfPrimaries {
+  double inside = 0, between = 0, wall = 0;
+
+  /// Of primaries whose grains are these.
+  FrictionRule rule(const std::vector<int>& grain_of) const {
+    return [friction = *this, grain_of](int a, int b) {
+      if (b >= static_cast<int>(grain_of.size())) return friction.wall;
+      return grain_of[a] == grain_of[b] ? friction.inside : friction.between;
+    };
+  }
+  friend bool operator==(const FrictionOfPrimaries&, const FrictionOfPrimaries&) = default;
+};
+
 /// Grains of bonded primaries as they are placed.
 struct BondedGrainsSetup {
   RigidParticles<2> particles;       ///< grain after grain
   std::vector<double> grain_radius;  ///< of the undeformed grains [m]
   std::vector<Attraction> laws;      ///< of each grain
-  FrictionRule friction;
+  FrictionOfPrimaries friction;
   RigidStepOptions options;
   double skin = 0;     ///< of the lists of pairs [m]
   double density = 0;  ///< of the grains [kg/m^3]
@@ -40,6 +54,8 @@ class BondedGrains final : public Model {
   std::string exhaustion(const Box<2>& box) const override;
   void visit(StateVisitor& visit) override;
   void go_on(const Box<2>& box) override;
+  Settings settings() const override;
+  void set(const Settings& settings) override;
 
   double density() const override { return density_; }
   std::vector<double> radii() const override { return grain_radius_; }
@@ -73,6 +89,7 @@ class BondedGrains final : public Model {
 
   std::vector<double> grain_radius_;
   double density_ = 0, sigma_I_ = 0;
+  FrictionOfPrimaries friction_;
   AttractionForces attraction_;
   RigidDynamics<2> dynamics_;
   int most_sweeps_ = 0;      // of a step but the first

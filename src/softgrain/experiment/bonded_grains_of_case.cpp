@@ -26,14 +26,6 @@ RigidStepOptions rigid_step_options(const Case& c) {
           .precision = c.solver.precision};
 }
 
-FrictionRule friction_rule(const Case& c, std::vector<int> grain_of) {
-  const double inner = c.bpm.inner_friction, between = c.contact.friction, wall = c.contact.wall_friction;
-  return [=, grain = std::move(grain_of)](int a, int b) {
-    if (b >= static_cast<int>(grain.size())) return wall;
-    return grain[a] == grain[b] ? inner : between;
-  };
-}
-
 /// A grain that touches the walls above and below it.
 RigidParticles<2> single_grain(const Case& c, const Aggregate& aggregate) {
   std::vector<Vec<2>> position = aggregate.position;
@@ -88,7 +80,8 @@ BondedGrainsSetup setup_in_a_box(const Case& c) {
 PlacedModel bonded_grains_of(const Case& c) {
   const double dt = checked_bonded_time_step(c);
   BondedGrainsSetup setup = is_in_a_box(c) ? setup_in_a_box(c) : setup_between_walls(c);
-  setup.friction = friction_rule(c, setup.particles.grain);
+  setup.friction = {
+      .inside = c.bpm.inner_friction, .between = c.contact.friction, .wall = c.contact.wall_friction};
   setup.options = rigid_step_options(c);
   setup.density = c.grain.density;
   Box<2> box(setup.particles.walls);

@@ -22,7 +22,7 @@ enum class LoadingPath {
   isotropic,   ///< grains in a box whose four walls come in
   biaxial,     ///< isotropic to a stress, then top and bottom wall come in while the side walls keep it
   shear,       ///< isotropic to a stress, then simple shear of a periodic cell under that stress
-  die,         ///< the top wall presses grains in a box, keeps the stress, and leaves
+  die,         ///< the top wall presses grains in a box, keeps the stress, and leaves; the sides open
   relaxation,  ///< compaction, then rest
   stages,      ///< grains in a box, along stages of one's own
 };
@@ -100,7 +100,8 @@ struct Case {
     double confining_stress = 0;      ///< of the side walls of a biaxial path [Pa]
     double shear_rate = 0;            ///< of a periodic cell [1/s]
     double max_shear = 1;             ///< shear strain at the end
-    double rest = 0;  ///< kinetic over stored energy that ends the rest of a relaxation; 0: none
+    double rest = 0;     ///< kinetic over stored energy that ends the rest of a relaxation; 0: none
+    bool eject = false;  ///< whether the side walls of a die open after unloading, until they bear nothing
   } loading;
 
   std::vector<Stage> stages{};  ///< of one's own, instead of those of a short form

@@ -15,15 +15,18 @@ Simulation::Simulation(std::unique_ptr<Model> model, Box<2> box, Loading loading
     : model_(std::move(model)),
       box_(std::move(box)),
       loading_(std::move(loading)),
+      initial_(model_->settings()),
       dt_(dt),
       steps_planned_(loading_.steps_planned(dt)) {
   row_.impulse.assign(box_.faces(), 0);
+  apply_settings();
 }
 
 Simulation::Simulation(const Simulation& other)
     : model_(other.model_->copy()),
       box_(other.box_),
       loading_(other.loading_),
+      initial_(other.initial_),
       dt_(other.dt_),
       step_(other.step_),
       steps_planned_(other.steps_planned_),
@@ -51,6 +54,7 @@ StepReport Simulation::step() {
   row_.duration += dt_;
   loading_.after_step(box_, time(), dt_, felt_in(report));
   if (!over && model_->is_exhausted(report, box_)) loading_.end(Loading::End::exhausted);
+  if (loading_.at_turning_point()) apply_settings();
   return report;
 }
 
@@ -200,6 +204,8 @@ Checkpoint Simulation::checkpoint() const {
 
 void Simulation::restore(const Checkpoint& checkpoint) {
   StateReader reader(checkpoint.arrays);
+  loading_.visit(reader);
+  apply_settings();
   visit(reader);
   model_->go_on(box_);
   steps_planned_ = loading_.steps_planned(dt_);

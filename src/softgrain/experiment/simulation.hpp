@@ -78,6 +78,7 @@ class Simulation final {
     std::vector<double> impulse;  // on each wall, outwards [N s/m]
     double duration = 0;          // [s]
   };
+  void apply_settings() { model_->set(initial_.then(loading_.settings())); }
   StepFelt felt_in(const StepReport& report) const;
   PackingMeasures packing() const;
   Bodies peculiar_bodies() const;
@@ -86,6 +87,7 @@ class Simulation final {
   std::unique_ptr<Model> model_;
   Box<2> box_;
   Loading loading_;
+  Settings initial_;  // of the case, which stages change
   double dt_ = 0;
   std::int64_t step_ = 0, steps_planned_ = 0;
   RowSums row_;

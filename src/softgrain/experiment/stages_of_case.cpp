@@ -9,7 +9,8 @@
 namespace softgrain {
 namespace {
 
-constexpr auto yy = static_cast<std::size_t>(Part::yy), top = static_cast<std::size_t>(Part::top);
+constexpr auto yy = static_cast<std::size_t>(Part::yy), xx = static_cast<std::size_t>(Part::xx),
+               top = static_cast<std::size_t>(Part::top);
 
 Drive at_velocity(Part part, double velocity) {
   return {.part = part, .control = Control::velocity, .value = velocity};
@@ -23,6 +24,9 @@ constexpr double side_speed = 5;
 
 /// What presses along y: the top wall, or the cell.
 Part pressing(const Case& c) { return repeats_of(c)[1] ? Part::yy : Part::top; }
+
+/// Strain by which the sides of a die open at most.
+constexpr double most_opened = 0.1;
 
 /// What a short form leaves its path for.
 std::vector<Exit> exits_of(const Case& c) {
@@ -120,8 +124,17 @@ std::vector<Stage> die(const Case& c) {
       .name = "hold", .drives = {keeps(Part::top, stress)}, .until = {.time = c.loading.hold}, .key = key};
   Stage unload{.name = "unload", .drives = {at_velocity(Part::top, -v)}};
   unload.until.stress[top] = 0;
-  if (c.loading.hold == 0) return {press, unload};
-  return {press, hold, unload};
+  std::vector<Stage> stages{press, hold, unload};
+  if (c.loading.eject) {
+    Stage eject{.name = "eject", .drives = {at_velocity(Part::xx, -v)}}, lift = unload;
+    eject.until.stress[xx] = 0;
+    eject.limit = -most_opened;
+    lift.name = "lift";
+    lift.limit = -most_opened / 2;
+    stages.insert(stages.end(), {eject, lift, rest(c.loading.hold)});
+  }
+  if (c.loading.hold == 0) std::erase_if(stages, [](const Stage& stage) { return stage.until.time == 0; });
+  return stages;
 }
 
 std::vector<Stage> relaxation(const Case& c) {

@@ -177,6 +177,18 @@ std::vector<GrainView> LatticeGrains::grains() const {
   return views;
 }
 
+Settings LatticeGrains::settings() const {
+  const UpdatedLagrangianOptions& options = dynamics_.options;
+  return {.friction = options.friction, .wall_friction = options.wall_friction, .damping = options.damping};
+}
+
+void LatticeGrains::set(const Settings& settings) {
+  UpdatedLagrangianOptions& options = dynamics_.options;
+  options.friction = settings.friction.value_or(options.friction);
+  options.wall_friction = settings.wall_friction.value_or(options.wall_friction);
+  options.damping = settings.damping.value_or(options.damping);
+}
+
 void LatticeGrains::visit(StateVisitor& visit) {
   PointGrain& grain = dynamics_.grains.front();
   visit({"position", "m", Owner::point, Role::state, "material points"}, grain.position);

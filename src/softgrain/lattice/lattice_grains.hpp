@@ -17,6 +17,8 @@ class LatticeGrains final : public Model {
   std::unique_ptr<Model> copy() const override { return std::make_unique<LatticeGrains>(*this); }
   StepReport step(Box<2>& box, double dt) override;
   void visit(StateVisitor& visit) override;
+  Settings settings() const override;
+  void set(const Settings& settings) override;
 
   double density() const override { return dynamics_.density; }
   std::vector<double> radii() const override;

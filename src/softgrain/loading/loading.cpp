@@ -19,6 +19,7 @@ Loading::Loading(const std::vector<Stage>& stages, const LoadingFrame& frame, co
     : stages_(without_repeats(stages)), frame_(frame) {
   for (int c = 0; c < 3; ++c) frame_.start[c] = length_at_stage_[c] = length(box, c);
   if (frame_.measure.kind == StrainMeasure::Kind::of_box) frame_.measure.length = frame_.start[0];
+  for (std::size_t k = 1; k < stages_.size(); ++k) stages_[k].set = stages_[k - 1].set.then(stages_[k].set);
   plan_stages();
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -58,6 +59,8 @@ class Loading {
   /// True if the coming step is the first of a stage but the first one.
   bool at_turning_point() const { return !finished() && number_ != number_of_last_; }
   double strain(const Box<2>& box) const { return frame_.strain(0, box.height()); }
+  /// What the stages up to the one of the coming step have changed.
+  const Settings& settings() const { return stages_[std::min(stage_, stages_.size() - 1)].set; }
   /// Whether a stage waits for the grains to come to rest.
   bool asks_for_rest() const;
 

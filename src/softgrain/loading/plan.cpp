@@ -119,7 +119,7 @@ std::optional<StrainLimit> limit_of(const Stage& stage, const std::array<double,
     const int component = component_of(drive.part);
     const double start = strain_at_start[component];
     if (drive.value > 0) return StrainLimit{component, stage.limit.value_or(last_strain_together)};
-    return StrainLimit{component, start > 0 ? 0 : start - 1};
+    return StrainLimit{component, stage.limit.value_or(start > 0 ? 0 : start - 1)};
   }
   return std::nullopt;
 }

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "softgrain/model/settings.hpp"
+
 namespace softgrain {
 
 /// What a stage moves: a component is both walls of a pair, or both ends of a periodic cell, each of which
@@ -87,6 +89,7 @@ struct Stage {
   std::string name{};
   std::vector<Drive> drives{};
   Until until{};
+  Settings set{};             ///< what changes where it begins, for it and for what follows
   int repeat = 1;             ///< how often the stages from `repeat_from` to this one are done
   std::string repeat_from{};  ///< name of a stage before; "": this stage alone
 

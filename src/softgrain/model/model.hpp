@@ -9,6 +9,7 @@
 #include "softgrain/contact/contact_problem.hpp"
 #include "softgrain/contact/step_report.hpp"
 #include "softgrain/geometry/box.hpp"
+#include "softgrain/model/settings.hpp"
 #include "softgrain/observe/contact_network.hpp"
 #include "softgrain/observe/energy.hpp"
 #include "softgrain/observe/observation.hpp"
@@ -92,6 +93,10 @@ class Model {
   virtual void go_on(const Box<2>&) {}
   /// Each grain as a whole gets the velocity L x more, x its centre; the work that this takes is the walls'.
   virtual void follow(const Mat<2>& /*L*/) {}
+  /// What holds now, of what may change.
+  virtual Settings settings() const { return {}; }
+  /// From the coming step on. Before a visitor reads the state, so that it is read as it was written.
+  virtual void set(const Settings&) {}
   /// Sums since the last row begin again.
   virtual void begin_row() {}
 

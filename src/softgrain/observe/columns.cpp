@@ -18,6 +18,9 @@ Value force_on(const Observation& o) {
   return o.wall_force[Number];
 }
 
+/// Over a stress of the load; 0 where it presses on nothing.
+double ratio_to(double load, double stress) { return load > 0 ? stress / load : 0; }
+
 Value mean_side_force(const Observation& o) { return (o.wall_force[2] + o.wall_force[3]) / 2; }
 
 /// What only boxes have.
@@ -53,6 +56,10 @@ constexpr std::array table{
     Column{"stress_top", "Pa", every_run, "`force_top` over `width` (27)", [](const Observation& o) -> Value { return o.wall_force[1] / o.width; }},
     Column{"stress_side", "Pa", boxes, "mean of the two side walls",
         [](const Observation& o) { return o.packing ? Value(*mean_side_force(o) / o.height) : std::nullopt; }},
+    Column{"transmission_ratio", "", boxes, "`stress_bottom` over `stress_top`: what friction at the side walls leaves of the load of the top wall. 0 while that bears nothing",
+        [](const Observation& o) { return o.packing ? Value(ratio_to(o.wall_force[1], o.wall_force[0])) : std::nullopt; }},
+    Column{"radial_ratio", "", boxes, "`stress_side` over the mean of `stress_bottom` and `stress_top`: radial over axial stress of a die. 0 while nothing presses",
+        [](const Observation& o) { return o.packing ? Value(ratio_to((o.wall_force[0] + o.wall_force[1]) / 2 * o.height, *mean_side_force(o) * o.width)) : std::nullopt; }},
     Column{"force_bottom", "N/m", every_run, "outward force on the bottom wall: impulses of the steps since the row before over their time", force_on<0>},
     Column{"force_top", "N/m", every_run, "the same of the top wall", force_on<1>},
     Column{"sigma_I", "Pa", bonded, R"($F_0/\langle a_0\rangle$, the internal cohesive pressure by which stresses are scaled (16))", NUMBER("sigma_I")},

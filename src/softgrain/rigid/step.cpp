@@ -56,6 +56,20 @@ void RigidDynamics<Dim>::rebuild_contacts() {
   replaced_ = std::exchange(contacts, std::move(made));
 }
 
+/// Contacts with and without friction are listed apart, so that the list is made again.
+template <int Dim>
+void RigidDynamics<Dim>::set_friction(FrictionRule friction) {
+  friction_ = std::move(friction);
+  list_between_again();
+}
+
+template <int Dim>
+void RigidDynamics<Dim>::list_between_again() {
+  if (reference.made.empty()) return;
+  reference.made.back() = ++reference.generation;
+  rebuild_contacts();
+}
+
 /// Their contacts are listed apart, so that the list is made again when other walls are pressed.
 template <int Dim>
 void RigidDynamics<Dim>::list_pressed_walls() {
@@ -64,9 +78,7 @@ void RigidDynamics<Dim>::list_pressed_walls() {
     pressed.push_back(particles.press_share(particles.wall_body(w)) != 0);
   if (pressed == pressed_) return;
   pressed_ = std::move(pressed);
-  if (reference.made.empty()) return;
-  reference.made.back() = ++reference.generation;
-  rebuild_contacts();
+  list_between_again();
 }
 
 /// The presses under the impulses that their contacts carry now.

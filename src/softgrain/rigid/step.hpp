@@ -72,11 +72,14 @@ class RigidDynamics {
 
   /// Makes the contacts of renewed lists again from the reference as it is.
   void rebuild_contacts();
+  /// From now on, another one between grains or at walls; impulses stay.
+  void set_friction(FrictionRule friction);
 
  private:
   void kick(const ForceField<Dim>& field, double dt);
   void prepare(int begin, int end, double dt);
   void list_pressed_walls();
+  void list_between_again();
   PushedBodies pressed_walls(double dt) const;
   void move_presses(double dt);
   void end_step_of_presses(double dt);

@@ -131,6 +131,25 @@ PressBody ElasticGrains<Dynamics>::press_body(const Box<2>& box, int axis, doubl
 }
 
 template <class Dynamics>
+Settings ElasticGrains<Dynamics>::settings() const {
+  const auto& options = dynamics_.options;
+  Settings settings{
+      .friction = options.friction, .wall_friction = options.wall_friction, .damping = options.damping};
+  if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>) settings.newton_tolerance = options.tolerance;
+  return settings;
+}
+
+template <class Dynamics>
+void ElasticGrains<Dynamics>::set(const Settings& settings) {
+  auto& options = dynamics_.options;
+  options.friction = settings.friction.value_or(options.friction);
+  options.wall_friction = settings.wall_friction.value_or(options.wall_friction);
+  options.damping = settings.damping.value_or(options.damping);
+  if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>)
+    options.tolerance = settings.newton_tolerance.value_or(options.tolerance);
+}
+
+template <class Dynamics>
 void ElasticGrains<Dynamics>::catch_problem() {
   if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>)
     dynamics_.caught.emplace();

@@ -23,6 +23,8 @@ class ElasticGrains final : public Model {
   StepReport step(Box<2>& box, double dt) override;
   void follow(const Mat<2>& L) override { dynamics_.work.walls += add_affine_velocity(dynamics_.grains, L); }
   void visit(StateVisitor& visit) override;
+  Settings settings() const override;
+  void set(const Settings& settings) override;
   void begin_row() override { sums_.steps = sums_.iterations = 0; }
 
   double density() const override { return dynamics_.grains.density; }

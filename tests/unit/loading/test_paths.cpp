@@ -50,6 +50,52 @@ TEST_CASE("a die presses with its top wall to a stress, keeps it, and lets go") 
   CHECK(weak.loading.outcome().shortfall.find("was not reached by strain 0.05") != std::string::npos);
 }
 
+TEST_CASE("a die ejects: after unloading the sides go apart until they bear nothing, and all walls rest") {
+  const auto ejecting = [](double hold) {
+    SpringRun run = run_of({.wall_velocity = v,
+                            .max_strain = 0.3,
+                            .max_stress = target,
+                            .unload_at = {},
+                            .hold = hold,
+                            .eject = true},
+                           LoadingPath::die);
+    run.model.loss = {-0.1 * target, 0.2 * target};  // the sides bear this, and the top less
+    return run;
+  };
+  SpringRun run = ejecting(5e-3);
+  for (int stage = 0; stage < 3; ++stage) run.finish_stage();
+  const double height = run.box.height();
+  CHECK(run.box.width() == 20e-3);
+  CHECK(20e-3 / height == doctest::Approx(std::exp(0.02)).epsilon(1e-4));
+  CHECK(run.stress(0) == doctest::Approx(0.1 * target));
+  run.finish_stage();
+  CHECK(run.box.width() / 20e-3 == doctest::Approx(std::exp(0.01)).epsilon(1e-4));
+  CHECK(run.box.walls[left_wall].point[0] == doctest::Approx(-(run.box.width() - 20e-3) / 2));
+  CHECK(run.box.height() == height);
+  CHECK(std::abs(run.stress(0)) < 1e-3 * target);
+  run.model.loss[1] = 0.1 * target;  // the compact grows when the sides let go
+  run.finish_stage();
+  CHECK(20e-3 / run.box.height() == doctest::Approx(std::exp(0.01)).epsilon(1e-4));
+  CHECK(std::abs(run.stress(1)) < 2e-3 * target);
+  CHECK_FALSE(run.loading.finished());
+  const double start = run.time(), width = run.box.width();
+  run.finish();
+  CHECK(run.time() - start == doctest::Approx(5e-3));
+  CHECK(run.box.width() == width);
+  CHECK(run.box.walls[bottom_wall].point == Vec<2>{0, 0});
+  CHECK(run.loading.outcome().completed);
+  CHECK(run.loading.outcome().shortfall.empty());
+  SpringRun swollen = ejecting(0);
+  swollen.model.loss[0] = -1.5 * target;
+  swollen.finish();
+  CHECK(swollen.loading.outcome().shortfall.starts_with(
+      "stage 'eject': stress_xx of 0 Pa was not reached by strain -0.1"));
+  SpringRun without_rest = ejecting(0);
+  without_rest.finish();
+  CHECK(without_rest.loading.number() == 3);
+  CHECK(without_rest.box.width() / 20e-3 == doctest::Approx(std::exp(0.01)).epsilon(1e-4));
+}
+
 TEST_CASE("a relaxation compacts, and rests until its time is over or the grains are at rest") {
   for (const bool at_rest : {false, true}) {
     SpringRun run =

@@ -44,7 +44,9 @@ TEST_CASE("a square packing of square grains shows what can be counted by hand")
     }
   const std::vector<double> radius(n * n, 0.9), mass(n * n, 4);
   Observation observation;
-  observation.wall_force.assign(4, 0);
+  observation.wall_force = {6, 10, 3, 5};
+  observation.width = 4;  // of the box, so that a mean of stresses is none of forces
+  observation.height = 2;
   observation.packing = measure_packing({.width = side,
                                          .height = side,
                                          .radius = radius,
@@ -78,4 +80,10 @@ TEST_CASE("a square packing of square grains shows what can be counted by hand")
   CHECK(row["force_mean"] == doctest::Approx(7.5));
   CHECK(row["circularity"] == doctest::Approx(std::numbers::pi / 4));
   CHECK(row["aspect_ratio"] == doctest::Approx(1));
+  CHECK(row["transmission_ratio"] == doctest::Approx(0.6));
+  CHECK(row["radial_ratio"] == doctest::Approx((4.0 / 2) / (8.0 / 4)));
+  observation.wall_force = {0, 0, 3, 5};
+  for (const Quantity& quantity : row_of(observation)) row[quantity.name] = quantity.value;
+  CHECK(row["transmission_ratio"] == 0);
+  CHECK(row["radial_ratio"] == 0);
 }

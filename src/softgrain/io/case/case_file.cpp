@@ -57,6 +57,9 @@ class CaseReader {
       const bool repeats = value == si_value(Case{}, key) || (is_derived(key) && value == held);
       if (at->second.set >= 0 || !repeats) names.push_back(key.name);
     }
+    for (const std::string& name : keys_set_by_stages(draft_.the_case))
+      if (!find_key(name)->acts.covers(draft_.the_case) && std::ranges::find(names, name) == names.end())
+        names.push_back(name);
     return names;
   }
 

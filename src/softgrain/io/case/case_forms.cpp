@@ -59,6 +59,11 @@ std::vector<FormKey> all_forms() {
 
       {"stage.name", Takes::text, {}, "name of the stage"},
       number("stage.repeat", "", {.low = 1}, "how often the stages from repeat_from to this one are done, this time included"),
+      stands_for("stage.set.contact.friction", {"contact.friction"}, "from the begin of the stage on, as all that `set` changes: between grains"),
+      stands_for("stage.set.contact.wall_friction", {"contact.wall_friction"}, "against walls"),
+      stands_for("stage.set.solver.tolerance", {"solver.tolerance"}, "of the contact solver (bpm)"),
+      stands_for("stage.set.mpm.tolerance", {"mpm.tolerance"}, "of Newton's method (implicit mpm)"),
+      stands_for("stage.set.mpm.damping", {"mpm.damping"}, "of grains (mpm)"),
       {"stage.repeat_from", Takes::text, {}, "name of the stage from which on is repeated; left out: this one alone"},
       number("stage.until.time", "ms", positive, "time since the stage began"),
       number("stage.until.strain", "", any, "compressive strain of yy since the start of the run, as the column strain has it"),

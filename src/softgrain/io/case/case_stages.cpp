@@ -25,6 +25,17 @@ struct Manner {
 constexpr std::array manners{Manner{"velocity", Control::velocity}, Manner{"rate", Control::rate},
                              Manner{"stress", Control::stress}, Manner{"strain_amplitude", Control::strain}};
 
+/// What a stage may set, by the names of the keys.
+struct Setting {
+  const char* key;
+  std::optional<double> Settings::*value;
+};
+constexpr std::array all_settings{Setting{"contact.friction", &Settings::friction},
+                                  Setting{"contact.wall_friction", &Settings::wall_friction},
+                                  Setting{"solver.tolerance", &Settings::solver_tolerance},
+                                  Setting{"mpm.tolerance", &Settings::newton_tolerance},
+                                  Setting{"mpm.damping", &Settings::damping}};
+
 /// What is wrong with a stage, and where.
 struct StageFault {
   Origin at;
@@ -106,6 +117,8 @@ Stage stage_of(const StageText& text) {
   Stage stage{.name = text.word("stage.name"), .until = until_of(text)};
   for (const Part part : parts)
     if (const auto drive = drive_of(text, part)) stage.drives.push_back(*drive);
+  for (const Setting& setting : all_settings)
+    stage.set.*setting.value = text.number(fmt::format("stage.set.{}", setting.key));
   stage.repeat = repeat_of(text);
   stage.repeat_from = text.word("stage.repeat_from");
   return stage;
@@ -186,6 +199,8 @@ Json json_of(const Stage& stage) {
   if (!stage.name.empty()) json["name"] = stage.name;
   for (const Drive& drive : stage.drives) json[std::string(name_of(drive.part))] = json_of(drive);
   json["until"] = json_of(stage.until);
+  for (const Setting& setting : all_settings)
+    if (const auto& value = stage.set.*setting.value) json["set"][setting.key] = *value;
   if (stage.repeat != 1) json["repeat"] = stage.repeat;
   if (!stage.repeat_from.empty()) json["repeat_from"] = stage.repeat_from;
   return json;
@@ -228,6 +243,15 @@ void read_stages(const std::vector<StageText>& texts, CaseDraft& draft) {
       return;
     }
   }
+}
+
+std::vector<std::string> keys_set_by_stages(const Case& the_case) {
+  std::vector<std::string> keys;
+  for (const Setting& setting : all_settings)
+    for (const Stage& stage : the_case.stages)
+      if (stage.set.*setting.value && (keys.empty() || keys.back() != setting.key))
+        keys.emplace_back(setting.key);
+  return keys;
 }
 
 std::string stages_text(const Case& the_case) {

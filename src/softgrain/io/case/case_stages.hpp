@@ -23,6 +23,9 @@ struct StageText {
 /// or never ends is an issue.
 void read_stages(const std::vector<StageText>& stages, CaseDraft& draft);
 
+/// Keys of the schema that any stage sets.
+std::vector<std::string> keys_set_by_stages(const Case& the_case);
+
 /// The stages as they stand in a file, in SI; "" where a case has none of its own.
 std::string stages_text(const Case& the_case);
 /// The same as a list of objects in JSON.

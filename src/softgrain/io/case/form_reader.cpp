@@ -23,7 +23,6 @@ constexpr std::array later_keys{
     LaterKey{"box.z", "space has two dimensions"},
     LaterKey{"box.die_friction", "a [[pair]] between a kind and \"wall\" holds for all walls"},
     LaterKey{"stage.zz", "space has two dimensions"},
-    LaterKey{"stage.set", "keys hold for the whole run"},
 };
 
 bool is_below(std::string_view name, std::string_view above) {
@@ -35,7 +34,24 @@ bool has_forms_below(const std::string& name) {
                              [&](const FormKey& form) { return form.name.starts_with(name + "."); });
 }
 
+constexpr std::string_view set_prefix = "stage.set.";
+
+/// Names of keys that a stage may set.
+std::vector<std::string> settable_keys() {
+  std::vector<std::string> names;
+  for (const FormKey& form : form_keys())
+    if (form.name.starts_with(set_prefix)) names.push_back(form.name.substr(set_prefix.size()));
+  return names;
+}
+
 std::string unknown_key(const std::string& name) {
+  if (name.starts_with(set_prefix)) {
+    const std::string key = name.substr(set_prefix.size());
+    const std::string allowed = fmt::format("set takes {}", fmt::join(settable_keys(), ", "));
+    if (find_key(key) == nullptr)
+      return fmt::format("unknown key '{}'{}; {}", key, did_you_mean(key, settable_keys()), allowed);
+    return fmt::format("'{}' may not change between stages; {}", key, allowed);
+  }
   std::vector<std::string> names;
   for (const FormKey& form : form_keys()) names.push_back(form.name);
   return fmt::format("unknown key '{}'{}", name, did_you_mean(name, names));
@@ -76,7 +92,7 @@ void FormReader::for_each_entry(const std::string& prefix, const TomlValue::Tabl
     const auto* inner = std::get_if<TomlValue::Table>(&entry.value.content);
     if (const std::string later = not_yet(name); !later.empty())
       draft_.add(origin, later);
-    else if (inner != nullptr && has_forms_below(name))
+    else if (inner != nullptr && (has_forms_below(name) || name.starts_with(set_prefix)))
       for_each_entry(name, *inner, set, visit);
     else if (const FormKey* form = find_form(name))
       visit(*form, entry.value, origin);
@@ -173,8 +189,12 @@ bool FormReader::check_word(const FormKey& form, const TomlValue& value, Origin 
 }
 
 std::optional<double> FormReader::number(const FormKey& form, const TomlValue& value, Origin origin) {
-  Key key{form.name, MemberOf<double>(+[](Case& c) -> double& { return c.loading.hold; }), form.unit,
-          form.range, form.text};
+  Key key{form.name, {}, form.unit, form.range, form.text};
+  if (form.takes == Takes::as_key) {
+    key = *find_key(form.keys.front());
+    key.name = form.name;
+  }
+  key.member = MemberOf<double>(+[](Case& c) -> double& { return c.loading.hold; });
   Case scratch;
   try {
     assign(scratch, key, value);
@@ -190,7 +210,7 @@ std::optional<double> FormReader::number(const FormKey& form, const TomlValue& v
 StageText FormReader::read_stage(const TomlValue::Table& table, Origin at) {
   StageText stage{.at = at, .numbers = {}, .words = {}};
   for_each_entry("stage", table, -1, [&](const FormKey& form, const TomlValue& value, Origin origin) {
-    if (form.takes == Takes::number) {
+    if (form.takes == Takes::number || form.takes == Takes::as_key) {
       if (const auto read = number(form, value, origin)) stage.numbers[form.name] = {*read, origin};
     } else if (form.takes == Takes::word) {
       if (check_word(form, value, origin)) stage.words[form.name] = {word_in(value), origin};

@@ -126,7 +126,7 @@ std::vector<Key> all_keys() {
       KEY(loading.unload_at, "", positive(),
           "ascending strains at which the wall turns back once; [] for none", turning),
       KEY(loading.unload_by, "", positive(), "strain given back before loading again", with_unloading),
-      KEY(loading.hold, "us", at_least(0), "rest of the wall wherever it turns, and at the end; biaxial, die: for which the stress is kept before it goes on; relaxation: of the rest", with_short_path),
+      KEY(loading.hold, "us", at_least(0), "rest of the wall wherever it turns, and at the end; biaxial, die: for which the stress is kept before it goes on; die: of the rest after ejection too; relaxation: of the rest", with_short_path),
       KEY(loading.hold_stress, "MPa", at_least(0),
           "vertical stress at which the walls leave their path: those that move keep it for loading.hold, which ends the run; "
           "isotropic: xx and yy each; 0: none (in a box)", packing_turning),
@@ -134,6 +134,7 @@ std::vector<Key> all_keys() {
       KEY(loading.shear_rate, "1/s", at_least(0), "of the shear strain (shear)", shearing),
       KEY(loading.max_shear, "", positive(), "shear strain at the end (shear)", shearing),
       KEY(loading.rest, "", at_least(0), "kinetic over stored energy, below which the rest ends before loading.hold is over; 0: none (relaxation)", relaxing),
+      KEY(loading.eject, "", anything(), "whether the side walls go apart after unloading until they bear nothing, then the top wall again, and all rest for loading.hold (die)", die),
 
       KEY(time.step, "us", at_least(0),
           "time step dt; auto: bpm: a 43rd of the period of the bonds between the smallest primaries; implicit mpm: the "

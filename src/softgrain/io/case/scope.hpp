@@ -78,6 +78,7 @@ inline constexpr Scope shearing{"on shear paths",
                                 [](const Case& c) { return is_path(c, LoadingPath::shear); }};
 inline constexpr Scope confining{"on biaxial and shear paths",
                                  [](const Case& c) { return biaxial.covers(c) || shearing.covers(c); }};
+inline constexpr Scope die{"on die paths", [](const Case& c) { return is_path(c, LoadingPath::die); }};
 inline constexpr Scope relaxing{"on relaxation paths",
                                 [](const Case& c) { return is_path(c, LoadingPath::relaxation); }};
 inline constexpr Scope with_unloading{"with loading.unload_at",

@@ -113,9 +113,6 @@ TEST_CASE("what comes with later versions is refused by key and line, and says w
   check_not_yet("[[kind]]\nname = 'a'\n[[pair]]\nbetween = ['a', 'a']\nsurface_energy = '0.05 J/m^2'\n",
                 "5:18", "today it is 0");
   check_not_yet("[[kind]]\nname = 'a'\n[[pair]]\nbetween = ['a', 'bottom']\n", "4:1", "is all of them");
-  check_not_yet(
-      "[[stage]]\nyy = { velocity = 1 }\nuntil = { strain = 0.1 }\nset = { 'pair.friction' = 0.3 }\n", "4:1",
-      "hold for the whole run");
 }
 
 TEST_CASE("mistakes in the long form are told with line, column and remedy") {

@@ -89,6 +89,46 @@ TEST_CASE("the resolved case keeps its stages, and reads back to itself") {
   CHECK(case_json(Case{}).find("\"stage\"") == std::string::npos);
 }
 
+TEST_CASE("a stage sets what may change between stages, in either spelling, and the resolved case keeps it") {
+  const std::string stage = "[[stage]]\nyy = { velocity = 1 }\nuntil = { strain = 0.1 }\n";
+  const Case read =
+      parse_case("[experiment]\nmodel = 'mpm'\n" + stage + stage +
+                     "set = { contact.friction = 0.1, 'contact.wall_friction' = 0, mpm = { damping = "
+                     "'2 1/ms', tolerance = 1e-5 } }\n" +
+                     stage + "set.solver.tolerance = 1e-6\n",
+                 "case.toml");
+  REQUIRE(read.stages.size() == 3);
+  CHECK(read.stages[0].set == Settings{});
+  CHECK(read.stages[1].set ==
+        Settings{.friction = 0.1, .wall_friction = 0, .newton_tolerance = 1e-5, .damping = 2000});
+  CHECK(read.stages[2].set == Settings{.solver_tolerance = 1e-6});
+  const Case again = parse_case(resolved_case_text(read), "case.toml");
+  for (std::size_t k = 0; k < 3; ++k) CHECK(again.stages[k].set == read.stages[k].set);
+  CHECK(case_json(read).find("\"contact.friction\": 0.1") != std::string::npos);
+  const CaseReading reading =
+      parse_case_with_notes(stage + "set = { mpm.damping = 1, contact.friction = 0.1 }\n", "case.toml");
+  CHECK(reading.without_effect == std::vector<std::string>{"mpm.damping"});  // of bpm
+}
+
+TEST_CASE("what a stage cannot set is refused by name, with what it can") {
+  const auto why = [](const std::string& set, const std::string& place, const std::string& words) {
+    const std::string message =
+        refusal("[[stage]]\nyy = { velocity = 1 }\nuntil = { strain = 0.1 }\n" + set + "\n");
+    CAPTURE(message);
+    CHECK(mentions(message, "case.toml:" + place + ": error: "));
+    CHECK(mentions(message, words));
+  };
+  why("set = { grain.density = 3 }", "4:15",
+      "'grain.density' may not change between stages; set takes contact.friction");
+  why("set = { 'time.step' = 1e-6 }", "4:9", "'time.step' may not change between stages");
+  why("set = { contact.frcition = 3 }", "4:17",
+      "unknown key 'contact.frcition'; did you mean 'contact.friction'?; set takes");
+  why("set = { contact.friction = -1 }", "4:28",
+      "stage.set.contact.friction = -1 is out of range: it must be >= 0");
+  why("set = { contact.friction = '1 mm' }", "4:28", "stage.set.contact.friction");
+  why("set = 3", "4:1", "'stage.set' is a table");
+}
+
 TEST_CASE("walls go as fast as the fastest stage says, unless loading.wall_velocity does") {
   const std::string stages =
       "[[stage]]\nyy = { velocity = 1 }\nuntil.strain = 0.1\n[[stage]]\nxx = { velocity = -3 }\nuntil.time = "
@@ -140,7 +180,7 @@ TEST_CASE("a short form says what it needs, and keys of other paths are without 
   CHECK(mentions(refusal(path("die")), "needs loading.max_stress > 0"));
   CHECK(mentions(refusal(path("relaxation")), "needs loading.hold > 0"));
   CHECK(refusal(path("biaxial", "confining_stress = 1e5\n")).empty());
-  CHECK(refusal(path("die", "max_stress = 1e5\n")).empty());
+  CHECK(refusal(path("die", "max_stress = 1e5\neject = true\n")).empty());
   CHECK(refusal(path("relaxation", "hold = 1e-3\nrest = 1e-4\n")).empty());
   const CaseReading reading = parse_case_with_notes(
       path("die", "max_stress = 1e5\nconfining_stress = 1e5\nunload_at = [0.1]\n"), "case.toml");

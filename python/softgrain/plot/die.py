@@ -1,0 +1,110 @@
+"""Pressing in a die: stresses and their ratios, and the equations of compaction with their constants."""
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from .. import NotRecorded, compaction, measure
+from .style import BLUE, DOUBLE_COLUMN, GREEN, GREY, MM, SINGLE_COLUMN, VERMILLION, millimetres
+
+HEIGHT = 62  # [mm]
+FIT_HEIGHT = 78  # with the constants above [mm]
+LEFT, RIGHT, BOTTOM, KEY_LINE = 12, 2.5, 9.5, 3.8  # margins; above, each line of the key [mm]
+STRESSES = (("stress_top", "top", BLUE), ("stress_bottom", "bottom", GREEN), ("stress_side", "sides", VERMILLION))
+RATIOS = (("transmission_ratio", "bottom over top", GREEN), ("radial_ratio", "radial over axial", VERMILLION))
+LEAST_LOAD = 0.05  # of the largest: below it ratios say nothing
+
+
+def draw_die(run):
+    """Stresses on the walls, way in and way back, and their ratios under load; elastic recovery in words."""
+    series = run.series
+    if not {"stress_side", "transmission_ratio", "phi"} <= series.keys():
+        raise NotRecorded(f"{run.path}: series.csv has no stress_side or transmission_ratio: that is of a box")
+    figure = Figure(figsize=(DOUBLE_COLUMN * MM, HEIGHT * MM), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    phi, load = series["phi"], measure.vertical_stress(series)
+    pressed = int(np.argmax(load))
+    under_load = load > LEAST_LOAD * load.max()
+    for column, words, colour in STRESSES:
+        left.plot(phi[: pressed + 1], series[column][: pressed + 1] / 1e6, color=colour, label=words)
+        left.plot(phi[pressed:], series[column][pressed:] / 1e6, color=colour, lw=0.7, ls="--")
+    left.plot([], [], color=GREY, lw=0.7, ls="--", label="after the largest load")
+    way_in = under_load & (np.arange(load.size) <= pressed)
+    for column, words, colour in RATIOS:
+        right.plot(load[way_in] / 1e6, series[column][way_in], color=colour, label=words)
+    left.set(xlabel=r"relative density $\Phi$", ylabel="stress [MPa]", ylim=(0, None))
+    left.legend(loc="upper left", title=_recovery_text(series), alignment="left", title_fontsize=7)
+    right.set(xlabel="axial stress [MPa]", ylabel="ratio of stresses, loading", xlim=(0, None), ylim=(0, None))
+    right.legend(loc="lower right")
+    return figure
+
+
+def _recovery_text(series):
+    found = compaction.recovery(series)
+    named = (("axial, unloaded", found.axial_unloaded), ("axial, ejected", found.axial), ("radial, ejected", found.radial))
+    lines = [f"{words}: {100 * value:+.2f} %" for words, value in named if value is not None]
+    index = compaction.plasticity_index(series)
+    lines += [f"plastic over total work: {index:.3f}"] if index is not None else []
+    return "\n".join(["recovery", *lines] if len(lines) else lines)
+
+
+def draw_heckel(run, window=None):
+    """ln(1/(1-D)) over P with Heckel's line, and Panelli and Ambrozio's curve."""
+    data = compaction.loading(run)
+    rows = data.density < 1
+    pressure, y = data.pressure[rows], -np.log1p(-data.density[rows])
+    line = compaction.heckel(pressure, data.density[rows], window)
+    root = compaction.panelli_ambrozio(pressure, data.density[rows], window)
+    K, A, yield_pressure = (line.constants[name] for name in ("K", "A", "1/K"))
+    figure, axes = _axes(pressure, y)
+    x = _window_points(line)
+    axes.plot(x / 1e6, line.line.at(x), color=VERMILLION,
+              label="Heckel, $K P + A$: " + f"$K$ = {_scaled(K, 1e6).text()} /MPa, $A$ = {A.text()},\n"
+              f"$1/K$ = {_scaled(yield_pressure, 1e-6).text()} MPa, $R^2$ = {line.line.r_squared:.4f}")
+    a, b = root.constants["A"], root.constants["B"]
+    axes.plot(x / 1e6, root.line.at(np.sqrt(x)), color=GREEN, ls="--",
+              label=r"Panelli–Ambrozio, $A\sqrt{P} + B$: " + f"$A$ = {_scaled(a, 1e3).text()} /$\\sqrt{{\\mathrm{{MPa}}}}$,\n"
+              f"$B$ = {b.text()}, $R^2$ = {root.line.r_squared:.4f}")
+    axes.set_ylabel(r"$\ln(1/(1-D))$, $D = \Phi$")
+    return _finish(figure, axes, line)
+
+
+def draw_kawakita(run, window=None):
+    """P/C over P with Kawakita's line."""
+    data = compaction.loading(run)
+    rows = data.reduction > 0
+    pressure, reduction = data.pressure[rows], data.reduction[rows]
+    fit = compaction.kawakita(pressure, reduction, window)
+    figure, axes = _axes(pressure, pressure / reduction / 1e6)
+    x = _window_points(fit)
+    a, b = fit.constants["a"], fit.constants["1/b"]
+    axes.plot(x / 1e6, fit.line.at(x) / 1e6, color=VERMILLION,
+              label="Kawakita, $P/a + 1/(ab)$: " + f"$a$ = {a.text()},\n"
+              f"$1/b$ = {_scaled(b, 1e-6).text()} MPa, $R^2$ = {fit.line.r_squared:.4f}")
+    axes.set_ylabel(r"$P/C$ [MPa], $C = 1 - V/V_\mathrm{start}$")
+    return _finish(figure, axes, fit)
+
+
+def _axes(pressure, y):
+    figure = Figure(figsize=(SINGLE_COLUMN * MM, FIT_HEIGHT * MM))
+    axes = figure.add_subplot()
+    axes.plot(pressure / 1e6, y, color=BLUE, ls="none", marker="o", ms=1.8, mew=0, label="loading")
+    axes.set(xlabel="axial stress $P$ [MPa]", xlim=(0, None))
+    return figure, axes
+
+
+def _window_points(fit):
+    return np.linspace(*fit.window, 100)
+
+
+def _finish(figure, axes, fit):
+    low, high = (pressure / 1e6 for pressure in fit.window)
+    axes.axvspan(low, high, color=GREY, alpha=0.12, lw=0, label=f"fitted from {low:.3g} to {high:.3g} MPa; ±: 95 % intervals")
+    lines = sum(1 + label.count("\n") for label in axes.get_legend_handles_labels()[1])
+    millimetres(figure, LEFT, RIGHT, BOTTOM, KEY_LINE * lines + 2)
+    axes.legend(loc="lower left", bbox_to_anchor=(-(LEFT - 1) / (SINGLE_COLUMN - LEFT - RIGHT), 1), borderaxespad=0.2, borderpad=0,
+                handletextpad=0.5)
+    return figure
+
+
+def _scaled(constant, factor):
+    return compaction.Constant(constant.value * factor, constant.half_width * factor)
