@@ -251,8 +251,8 @@ def nothing_is_loaded_at_first(trial):
 
 def walls_do_not_pull(trial):
     rows = trial.rows()
-    for name in ("stress_bottom", "stress_top", "stress_side"):
-        if name in rows[0]:
+    for name, end in (("stress_bottom", "box.y"), ("stress_top", "box.y"), ("stress_side", "box.x")):
+        if name in rows[0] and trial.keys.get(end) != "periodic":  # what moves in a cell may pull at its images
             largest = max(abs(row[name]) for row in rows)
             least = min(row[name] for row in rows)
             ensure(least >= -1e-6 * largest, f"{name} goes down to {least} Pa, beside {largest} Pa")
