@@ -1,4 +1,4 @@
-"""What `softgrain plot`, `sweep`, `export` and `reproduce` become: python3 DIR/softgrain VERB WORDS."""
+"""What `softgrain plot`, `movie`, `sweep`, `export` and the other verbs of Python become: python3 DIR/softgrain VERB WORDS."""
 
 import gc
 import sys
