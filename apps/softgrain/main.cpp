@@ -76,6 +76,7 @@ void add_verbs(CLI::App& app) {
   add_python_verb(app, "reproduce");
   add_python_verb(app, "plot");
   add_python_verb(app, "movie");
+  add_python_verb(app, "methods");
   add_report_verb(app);
   add_export_verb(app);
   add_python_verb(app, "paraview");
