@@ -34,6 +34,7 @@ pictures   python3-numpy           softgrain plot
 pictures   python3-matplotlib      softgrain plot
 pictures   python3-h5py            softgrain plot reads the snapshots
 tests      python3-scipy           tests of softgrain fit
+tests      python3-ase             reads our extended XYZ
 fit        python3-scipy           softgrain fit, 60 MB
 movie      ffmpeg                  softgrain movie writes MP4, 0.16 GB
 checks     python3                 tools/check_layers
