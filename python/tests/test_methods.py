@@ -132,6 +132,17 @@ class Program(unittest.TestCase):
                 self.assertIn("NOTE: ", out)
                 self.assertIn(words, out)
 
+    def test_the_program_itself_has_the_verbs_of_talks_papers_and_curves(self):
+        run, program = small_run("elastic"), os.environ["SOFTGRAIN_PROGRAM"]
+        with tempfile.TemporaryDirectory() as folder:
+            measured = Path(folder) / "measured.csv"
+            measured.write_text("strain,stress[MPa]\n0,0\n0.05,0.2\n0.1,0.4\n")
+            for words, code, printed in ((("methods", run.path), 0, text_of("elastic")), (("movie", run.path, "-o", f"{folder}/a.gif"), 0, "a.gif"),
+                                         (("compare", run.path, measured), 0, "rms difference"), (("fit", run.path / "case.toml", measured), 2, "--free")):
+                done = subprocess.run([program, *words], capture_output=True, text=True)
+                self.assertEqual(done.returncode, code, done.stderr)
+                self.assertIn(printed, done.stdout + done.stderr)
+
     def test_what_is_no_run_or_has_not_begun_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(methods(Path(folder) / "nothing")[0], 2)
