@@ -11,7 +11,7 @@ from ..compare import Comparison, draw_comparison, read_measured
 from ..options import parse
 from . import Problem, estimate, report
 
-USAGE_ERROR, IO_ERROR, INCOMPLETE = 2, 4, 5  # exit codes, those of the program `softgrain`
+USAGE_ERROR, IO_ERROR, INCOMPLETE, STOPPED = 2, 4, 5, 130  # exit codes, those of the program `softgrain`
 
 
 def case_of(options) -> Case:
@@ -49,6 +49,9 @@ def main(arguments=None):
     words = ["softgrain", "fit", *(sys.argv[2:] if arguments is None else map(str, arguments))]
     try:
         return fit(options, words)
+    except KeyboardInterrupt:
+        print("stopped; called again, the fit goes on", file=sys.stderr)
+        return STOPPED
     except RunFailed as failed:
         print(f"error: {failed}", file=sys.stderr)
         return failed.code

@@ -63,7 +63,9 @@ class Problem:
     @cached_property
     def within(self) -> np.ndarray:
         """The measured strains that the path of the case reaches."""
-        strain = self.run(np.zeros(len(self.free))).series["strain"]
+        start = np.zeros(len(self.free))
+        self._make([(start, self.seeds[0])])
+        strain = self.run(start).series["strain"]
         low, high = strain.min(), strain.max()
         within = self.curve.strain[(self.curve.strain >= low) & (self.curve.strain <= high)]
         if len(within) <= len(self.free):
@@ -89,7 +91,9 @@ class Problem:
         return np.column_stack([(other - here) / step for other, step in zip(there, steps)]) / self.scale
 
     def _make(self, wanted):
-        with ThreadPoolExecutor(self.jobs) as pool:
+        """All runs wanted, side by side; those that are doubtful are told at the end, together."""
+        with warnings.catch_warnings(), ThreadPoolExecutor(self.jobs) as pool:
+            warnings.simplefilter("ignore", DoubtfulRun)
             list(pool.map(lambda place: self.run(*place), wanted))
 
     def run(self, x, seed=None) -> Run:
@@ -102,9 +106,7 @@ class Problem:
                 self.runs_made += 1
                 if self.runs_made > self.most_runs:
                     raise FitError(f"gave up after {self.most_runs} runs, the last at {self._words(x)}; --most-runs allows more")
-                with warnings.catch_warnings():
-                    warnings.simplefilter("ignore", DoubtfulRun)
-                    run_case(case, path, threads=max(1, len(os.sched_getaffinity(0)) // self.jobs), resume=path.exists())
+                run_case(case, path, threads=max(1, len(os.sched_getaffinity(0)) // self.jobs), resume=path.exists())
             self.runs[path] = open_run(path)
             self.cpu_seconds += self.runs[path].info.get("cpu_seconds", 0)
         return self.runs[path]
