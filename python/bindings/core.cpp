@@ -143,6 +143,7 @@ py::dict scene_parts(LiveSimulation& live) {
   parts["contacts"] = arrays_of(scene.contacts);
   parts["outlines"] = arrays_of(scene.outlines);
   parts["walls"] = array_of(std::move(scene.wall_segments), 4);
+  parts["cell"] = array_of(std::move(scene.cell), 2);
   return parts;
 }
 

@@ -77,11 +77,16 @@ def has_forces(snapshot: Snapshot) -> bool:
 
 
 def surface(snapshot: Snapshot, values) -> Surface:
-    """Where a field of the particles is drawn: disks; of elastic grains their cells; of many grains whole grains."""
+    """Where a field of the particles is drawn: disks; of elastic grains their cells; of many grains whole grains; across
+    the edges of a periodic cell their images too."""
+    return _repeated(snapshot, _surface(snapshot, values))
+
+
+def _surface(snapshot, values):
     position, radius = snapshot.particles["position"], snapshot.particles["radius"]
     values = np.asarray(values, float)
     if shows_whole_grains(snapshot):
-        return grains(snapshot, grain_means(snapshot, values))
+        return _grains(snapshot, grain_means(snapshot, values))
     if not is_elastic(snapshot):
         return Surface([], position, radius, values, [])
     polygons = [vertices for _, vertices in outlines(snapshot)]
@@ -99,6 +104,10 @@ def shows_whole_grains(snapshot: Snapshot) -> bool:
 
 def grains(snapshot: Snapshot, values) -> Surface:
     """One value for each outline."""
+    return _repeated(snapshot, _grains(snapshot, values))
+
+
+def _grains(snapshot, values):
     polygons = [vertices for _, vertices in outlines(snapshot)]
     return Surface(polygons, NOWHERE, np.empty(0), np.asarray(values), polygons)
 
@@ -107,7 +116,39 @@ def bodies(snapshot: Snapshot) -> Surface:
     """What force chains are drawn over: disks, or the outlines of grains; without values."""
     if is_elastic(snapshot) or shows_whole_grains(snapshot):
         return grains(snapshot, np.zeros(len(outlines(snapshot))))
-    return Surface([], snapshot.particles["position"], snapshot.particles["radius"], np.zeros(len(snapshot.particles["radius"])), [])
+    radius = snapshot.particles["radius"]
+    return _repeated(snapshot, Surface([], snapshot.particles["position"], radius, np.zeros(len(radius)), []))
+
+
+def _repeated(snapshot, shapes):
+    """With the images of grains that reach into a periodic cell."""
+    images = snapshot.images()
+    if len(images) == 1:
+        return shapes
+    rims, particles = outlines(snapshot), snapshot.particles["grain"].astype(int)
+    of_rims = np.array([grain for grain, _ in rims])
+    shown = [np.array([not shift.any() or _reaches(snapshot.cell, rim + shift) for _, rim in rims]) for shift in images]
+
+    def repeated(grains):
+        """(number, shift) of all images that are shown, of things that belong to these grains."""
+        return [(k, shift) for shift, known in zip(images, shown) for k in np.flatnonzero(np.isin(grains, of_rims[known]))]
+
+    def moved(items, places):
+        return [items[k] + shift for k, shift in places]
+
+    whole = len(shapes.polygons) == len(rims)
+    polygons = repeated(of_rims if whole else particles[::4]) if len(shapes.polygons) else []
+    disks = repeated(particles) if len(shapes.centres) else []
+    return Surface(moved(shapes.polygons, polygons), np.array(moved(shapes.centres, disks)).reshape(-1, 2),
+                   np.asarray(shapes.radii)[[k for k, _ in disks]], np.asarray(shapes.values)[[k for k, _ in polygons or disks]],
+                   moved(shapes.rims, repeated(of_rims)) if shapes.rims else [])
+
+
+def _reaches(cell, points):
+    """Whether points span a part of the cell (along the axes that repeat)."""
+    along = np.array([vector if vector.any() else unit for vector, unit in zip(cell, np.eye(2))])
+    shares = points @ np.linalg.inv(along)
+    return all(shares[:, k].max() > 0 and shares[:, k].min() < 1 for k in range(2) if cell[k].any())
 
 
 def cells(snapshot: Snapshot) -> np.ndarray | None:
@@ -147,9 +188,34 @@ def chains(snapshot: Snapshot, scale: ForceScale) -> Chains:
     start, end = position[pair[:, 0]], np.empty((len(pair), 2))
     inside = pair[:, 1] < len(position)
     end[inside] = position[pair[inside, 1]]
+    images = snapshot.images()
+    ways = end[inside, None] + images - start[inside, None]
+    nearest = np.argmin(np.hypot(*np.moveaxis(ways, 2, 0)), axis=1)
+    end[inside] += images[nearest]
     for c in np.flatnonzero(~inside):
         end[c] = _foot(snapshot.walls[pair[c, 1] - len(position)], start[c], width[c] / 2)
-    return Chains(np.stack([start, end], axis=1), width, np.clip(force / scale.force, FAINTEST, DARKEST))
+    opacity = np.clip(force / scale.force, FAINTEST, DARKEST)
+    crossing = np.flatnonzero(inside)[nearest > 0]  # from the other side too
+    back = position[pair[crossing, 1]] - end[crossing]
+    other = np.stack([start[crossing] + back, position[pair[crossing, 1]]], axis=1)
+    return Chains(np.concatenate([np.stack([start, end], axis=1), other]), np.concatenate([width, width[crossing]]),
+                  np.concatenate([opacity, opacity[crossing]]))
+
+
+def _is_edge(snapshot):
+    """Of each of the walls: whether it is an edge of a periodic cell. The first two face along y."""
+    across = [row.any() for row in snapshot.cell] or [False, False]
+    return np.array([across[1 if k < 2 else 0] for k in range(len(snapshot.walls))], bool)
+
+
+def walls(snapshot: Snapshot) -> np.ndarray:
+    """(n, 2, 2): from where to where each goes."""
+    return snapshot.walls.reshape(-1, 2, 2)[~_is_edge(snapshot)]
+
+
+def cell_edges(snapshot: Snapshot) -> np.ndarray:
+    """The same of the edges of a periodic cell."""
+    return snapshot.walls.reshape(-1, 2, 2)[_is_edge(snapshot)]
 
 
 def box(snapshots: list) -> tuple:

@@ -1,5 +1,6 @@
 """A run's directory as Python objects: the case, the provenance, the series and the snapshots. SI units."""
 
+import itertools
 import json
 import tomllib
 from dataclasses import dataclass, field
@@ -29,8 +30,9 @@ class Snapshot:
     particles: dict  # position (n, 2) [m], radius (n,) [m], and any field by particle
     contacts: dict = field(default_factory=dict)  # pair (m, 2), force (m,), tangential_force (m,) [N/m];
     #                                               of elastic grains total_force, normal, position (m, 2) instead of the last
-    walls: np.ndarray = field(default_factory=lambda: np.empty((0, 4)))  # x0 y0 x1 y1 [m]
+    walls: np.ndarray = field(default_factory=lambda: np.empty((0, 4)))  # x0 y0 x1 y1 [m], or edges of a periodic cell
     outlines: dict = field(default_factory=dict)  # position (v, 2) [m], grain (v,): counter-clockwise polygons
+    cell: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # lattice vectors of a periodic cell, one a row [m]
 
     @property
     def contacts_of_grains(self) -> bool:
@@ -49,6 +51,11 @@ class Snapshot:
         from .export.contacts import contact_table
 
         return contact_table(self)
+
+    def images(self) -> np.ndarray:
+        """(m, 2) [m]: from what is shown to its next images across the edges of a periodic cell, the first of all itself."""
+        steps = [(0, 1, -1) if np.any(vector) else (0,) for vector in self.cell]
+        return np.array([np.array(n) @ self.cell for n in itertools.product(*steps)]) if steps else np.zeros((1, 2))
 
     def bodies(self) -> np.ndarray:
         """Where what `contacts["pair"]` counts lies, walls left out (n, 2) [m]: particles, or the centres of elastic grains."""
@@ -82,6 +89,7 @@ class Snapshot:
                 contacts=contacts,
                 walls=np.asarray(walls, float).reshape(-1, 4),
                 outlines=_arrays(scene, "outlines"),
+                cell=scene["cell"][()] if "cell" in scene else np.empty((0, 2)),
             )
 
 

@@ -85,7 +85,7 @@ class Frames(unittest.TestCase):
         self.assertGreater(tops[-1] - tops[0], 40)
 
     def test_chains_are_drawn_over_pressures_where_there_are_any(self):
-        for name, kinds in (("bonded", 3), ("packing", 4), ("elastic", 3)):  # surface, rims of cells, chains, walls
+        for name, kinds in (("bonded", 4), ("packing", 5), ("elastic", 4)):  # surface, rims of cells, chains, edges, walls
             film = film_of(small_run(name))
             film[len(film) - 1]
             self.assertEqual(len(film.axes.collections), kinds, name)

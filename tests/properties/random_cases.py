@@ -77,6 +77,9 @@ def tame_case(draw):
                  "sample.largest_diameter": 2 * radius,
                  "loading.max_strain": compaction / (2 if loading == "isotropic" else 1),
                  "contact.friction": draw.choice([0.0, draw.uniform(0, 1)])}
+        side = math.sqrt(grains * math.pi * 0.81 / filled)  # of a square box, in the largest radius
+        if side * math.sqrt(min(keys["sample.aspect"], 1 / keys["sample.aspect"])) > 5.5 and draw.random() < 0.6:
+            keys |= {"box.x": "periodic", "box.y": draw.choice(["periodic", "periodic", "walls"])}
     else:
         keys |= {"grain.radius": radius, "loading.max_strain": log_uniform(draw, 1e-3, 0.25)}
     (tame_elastic if model == "mpm" else tame_bonded)(draw, keys, box, radius, density)

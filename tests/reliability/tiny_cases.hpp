@@ -30,6 +30,9 @@ inline Words tiny_path(const std::string& name) {
     add({"loading.wall_velocity=\"0.05 m/s\"", "loading.hold=\"40 ms\"", "loading.max_strain=0.12"});
   if (name == "relaxation")
     add({"loading.wall_velocity=\"1 m/s\"", "loading.hold=\"1 ms\"", "loading.rest=0"});
+  if (name == "shear")
+    add({"sample.grains=9", "loading.wall_velocity=\"1 m/s\"", "loading.hold=\"3 ms\"",
+         "loading.shear_rate=40", "loading.max_shear=0.7", "loading.confining_stress=\"0.3 MPa\""});
   return settings;
 }
 
@@ -68,7 +71,7 @@ inline std::vector<TinyCase> tiny_cases() {
     const std::string name = entry.path().filename().string();
     const std::string source = (entry.path() / "case.toml").string();
     if (!fs::exists(source)) continue;
-    if (name == "die" || name == "biaxial" || name == "relaxation")
+    if (name == "die" || name == "biaxial" || name == "relaxation" || name == "shear")
       cases.push_back({name, source, tiny_path(name), name == "relaxation" ? 1U : 2U});
     else
       cases.push_back({name, source, tiny_settings(name)});
@@ -78,6 +81,14 @@ inline std::vector<TinyCase> tiny_cases() {
     settings.insert(settings.end(), more.begin(), more.end());
     cases.push_back({name, base, settings});
   };
+  const Words periodic{"box.x=\"periodic\"", "box.y=\"periodic\"", "sample.grains=9",
+                       "experiment.loading=\"isotropic\"", "loading.max_strain=0.16"};
+  for (const std::string name : {"compaction-bpm", "compaction-mpm", "explicit"}) {
+    Words more = periodic;
+    more.insert(more.end(), {"loading.unload_at=[0.14]", "loading.unload_by=0.04"});
+    if (name == "explicit") more.insert(more.end(), {"mpm.integrator=\"explicit\"", "time.step=0"});
+    add_variant("periodic-" + name, name == "explicit" ? "compaction-mpm" : name, more);
+  }
   add_variant("explicit-compaction", "compaction-mpm", {"mpm.integrator=\"explicit\"", "time.step=0"});
   add_variant("explicit-diametral", "diametral-mpm",
               {"mpm.integrator=\"explicit\"", "time.step=0", "grain.radius=\"1 mm\""});

@@ -12,11 +12,21 @@ def write_xyz(snapshots, file):
         columns = {"species": ["X"] * _count(snapshot), **_place(snapshot), **_marks(snapshot)}
         kinds = "species:S:1:pos:R:3" + "".join(f":{name}:{_kind(values)}:1" for name, values in
                                                  _marks(snapshot).items())
-        (x0, x1), (y0, y1), (z0, z1) = box(snapshot)
-        cell = f'Lattice="{x1 - x0:.9g} 0 0 0 {y1 - y0:.9g} 0 0 0 {z1 - z0:.9g}" Origin="{x0:.9g} {y0:.9g} {z0:.9g}"'
-        file.write(f'{_count(snapshot)}\n{cell} pbc="F F F" Properties={kinds} Time={snapshot.time:.9g} '
+        file.write(f'{_count(snapshot)}\n{_lattice(snapshot)} Properties={kinds} Time={snapshot.time:.9g} '
                    f"Step={snapshot.step}\n")
         file.writelines(" ".join(row) + "\n" for row in _rows(columns))
+
+
+def _lattice(snapshot):
+    """Of a periodic cell its own vectors, and which of them repeat."""
+    (x0, x1), (y0, y1), (z0, z1) = box(snapshot)
+    vectors, origin, repeats = np.diag([x1 - x0, y1 - y0, z1 - z0]), np.array([x0, y0, z0]), [False] * 3
+    for k, vector in enumerate(snapshot.cell):
+        if vector.any():
+            vectors[k, :2], origin[k], repeats[k] = vector, 0, True
+    pbc = " ".join("FT"[along] for along in repeats)
+    return (f'Lattice="{" ".join(f"{x:.9g}" for x in vectors.ravel())}" '
+            f'Origin="{" ".join(f"{x:.9g}" for x in origin)}" pbc="{pbc}"')
 
 
 def write_lammps(snapshots, file):

@@ -48,8 +48,10 @@ def write_svg(snapshot, scale, file):
     file.writelines(_surface(snapshot, scale, place, pixels))
     if _shows_chains(snapshot, scale):
         file.writelines(_chains(picture.chains(snapshot, scale.force), _chain_colour(scale), place, pixels))
-    for wall in snapshot.walls:
-        file.write(_line(place(wall.reshape(2, 2)), 'stroke-width="3"'))
+    for wall in picture.walls(snapshot):
+        file.write(_line(place(wall), 'stroke-width="3"'))
+    for edge in picture.cell_edges(snapshot):
+        file.write(_line(place(edge), 'stroke-width="1" stroke-dasharray="6 4"'))
     if scale.colour:
         file.writelines(_legend(scale.colour, MARGIN * WIDTH, height))
     if _shows_chains(snapshot, scale):

@@ -29,6 +29,7 @@ LOADINGS = {
     "compaction": "compacted in a box of rigid walls by the upper wall, which moved at {speed}",
     "isotropic": "compacted isotropically by four rigid walls, those opposite coming together at {speed}",
     "biaxial": "compressed biaxially by rigid walls at {speed}, the side walls keeping {confining}",
+    "shear": "sheared with a periodic cell that keeps {confining}",
     "die": "compacted in a die of rigid walls at {speed}",
     "relaxation": "compacted by rigid walls at {speed} and then held at rest",
     "stages": "loaded by rigid walls along the stages that the case file lists",
@@ -144,6 +145,11 @@ def _loading(case, facts):
     loading = case["loading"]
     words = LOADINGS[case["experiment"]["loading"]].format(speed=quantity(loading["wall_velocity"], "m/s"),
                                                            confining=quantity(loading["confining_stress"], "Pa"))
+    box = case["box"]
+    if box.get("y") == "periodic" and case["experiment"]["loading"] != "shear":
+        words = f"loaded by a cell that is periodic along x and y and follows the path {case['experiment']['loading']} of the case file"
+    elif box.get("x") == "periodic" and box.get("y") != "periodic":
+        words += " (the box is periodic along x)"
     turns = f", unloaded at {', '.join(f'{eps:.4g}' for eps in loading['unload_at'])}," if loading["unload_at"] else ""
     who = "The grain was" if facts.grains == 1 else "They were"
     return f"{who} {words}{turns} up to a strain of {facts.strain:.3g}."

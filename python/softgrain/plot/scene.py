@@ -42,10 +42,12 @@ def draw_chains(panel, chains, colour):
 
 
 def draw_walls(panel, snapshot, thickness):
-    """A bar along each wall, on the side away from the particles."""
+    """A bar along each wall, on the side away from the particles; a line along the edges of a periodic cell."""
     centre = snapshot.particles["position"].mean(axis=0)
     bars = []
-    for start, end in snapshot.walls.reshape(-1, 2, 2):
+    edges = picture.cell_edges(snapshot)
+    panel.add(LineCollection(edges, linewidths=0.6, linestyles="dashed", colors=INK, transform=panel.transform))
+    for start, end in picture.walls(snapshot):
         normal = np.array([start[1] - end[1], end[0] - start[0]]) / np.hypot(*(end - start))
         away = normal * np.sign(normal @ (start - centre))
         bars.append([start, end, end + thickness * away, start + thickness * away])

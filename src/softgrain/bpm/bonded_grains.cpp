@@ -59,6 +59,7 @@ StepReport BondedGrains::step(Box<2>& box, double dt) {
   for (std::size_t w = 0; w < box.walls.size(); ++w)
     set_wall_velocity(dynamics_.particles, static_cast<int>(w), box.walls[w].velocity);
   dynamics_.particles.presses = box.presses;
+  dynamics_.particles.cell = box.cell;
   if (keeps_problem_) velocity_start_ = dynamics_.particles.velocity;
   dynamics_.options.solver.max_sweeps = most_sweeps_ * (impulse_time_ == 0 ? first_step_factor : 1);
   StepReport report = dynamics_.step(
@@ -74,6 +75,7 @@ StepReport BondedGrains::step(Box<2>& box, double dt) {
     box.impulse[w] = dynamics_.wall_impulse(static_cast<int>(w));
   }
   box.presses = dynamics_.particles.presses;
+  box.cell = dynamics_.particles.cell;
   add_work();
   return report;
 }
@@ -84,6 +86,15 @@ void BondedGrains::add_work() {
   work_.dissipation -= work.contact + work.push_out;
   work_.between -= work.between;
   work_.friction -= work.friction;
+}
+
+/// All primaries of a grain alike.
+void BondedGrains::follow(const Mat<2>& L) {
+  RigidParticles<2>& particles = dynamics_.particles;
+  const double before = kinetic_energy(particles);
+  const std::vector<Vec<2>> centre = centres();
+  for (int i = 0; i < particles.size(); ++i) particles.velocity[i] += L * centre[particles.grain[i]];
+  work_.walls += kinetic_energy(particles) - before;
 }
 
 bool BondedGrains::is_exhausted(const StepReport& report, const Box<2>& box) const {
@@ -109,7 +120,7 @@ std::string BondedGrains::exhaustion(const Box<2>& box) const {
 double BondedGrains::solid_fraction(const Box<2>& box) const {
   double squares = 0;
   for (const double r : dynamics_.particles.radius) squares += r * r;
-  return std::numbers::pi * squares / (box.width() * box.height());
+  return std::numbers::pi * squares / box.volume();
 }
 
 std::pair<double, double> BondedGrains::extent() const {
@@ -165,7 +176,7 @@ Numbers BondedGrains::numbers(const Box<2>& box) const {
 
 Bodies BondedGrains::bodies() const {
   const auto& p = dynamics_.particles;
-  return {p.mass, {p.velocity.begin(), p.velocity.begin() + p.size()}};
+  return {p.mass, {p.velocity.begin(), p.velocity.begin() + p.size()}, p.grain};
 }
 
 std::vector<Vec<2>> BondedGrains::centres() const {
@@ -252,6 +263,10 @@ void BondedGrains::visit(StateVisitor& visit) {
   visit({"list_between", "m", Owner::body, Role::list, "where the list between grains was made"},
         reference.between);
   visit({"list_wall_point", "m", Owner::wall, Role::list, "where the walls were then"}, reference.wall_point);
+  PeriodicCell<2> list_cell = particles.cell;
+  if (list_cell.any())
+    visit_matrix(visit, {"list_cell", "m", Owner::run, Role::list, "lattice vectors of the cell then"},
+                 visit.reads() ? list_cell.edges : reference.cell.edges);
   visit(
       {"impulse_time", "s", Owner::run, Role::start, "the step over which impulses acted; 0: none was made"},
       impulse_time_);
@@ -265,7 +280,7 @@ void BondedGrains::visit(StateVisitor& visit) {
   // the lists are a function of their reference, so they come back in the same order
   if (visit.reads()) {
     restore_reference(reference, particles, std::move(reference.position), std::move(reference.between),
-                      std::move(reference.wall_point));
+                      std::move(reference.wall_point), list_cell);
     dynamics_.rebuild_contacts();
   }
   visit_impulses(dynamics_.contacts, visit);
@@ -273,6 +288,7 @@ void BondedGrains::visit(StateVisitor& visit) {
 
 void BondedGrains::go_on(const Box<2>& box) {
   dynamics_.particles.walls = box.walls;
+  dynamics_.particles.cell = dynamics_.contacts.cell = box.cell;
   detect_contacts(dynamics_.particles, dynamics_.contacts);
   attraction_.update(dynamics_.particles, dynamics_.reference);
 }

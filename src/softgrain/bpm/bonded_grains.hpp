@@ -35,6 +35,7 @@ class BondedGrains final : public Model {
   std::unique_ptr<Model> copy() const override { return std::make_unique<BondedGrains>(*this); }
   /// The first step starts without a guess of the impulses and may take 200 times the sweeps.
   StepReport step(Box<2>& box, double dt) override;
+  void follow(const Mat<2>& L) override;
   bool is_exhausted(const StepReport& report, const Box<2>& box) const override;
   std::string exhaustion(const Box<2>& box) const override;
   void visit(StateVisitor& visit) override;

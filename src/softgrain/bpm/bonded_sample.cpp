@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/geometry/cell_grid.hpp"
+#include "softgrain/geometry/images.hpp"
 
 namespace softgrain {
 namespace {
@@ -57,10 +57,9 @@ double push_apart(RigidParticles<2>& particles, std::span<Vec<2>> shift, double 
   for (int i = 0; i < particles.size(); ++i)
     for (const Wall<2>& wall : particles.walls)
       meet(particles.grain[i], R[i] - dot(x[i] - wall.point, wall.normal), wall.normal);
-  CellGrid<2>(x, 2 * widest).for_each_close_pair([&](int i, int j) {
+  for_each_close_pair<2>(x, particles.cell, 2 * widest, [&](int i, int j, const Vec<2>& d, const auto&) {
     const int a = particles.grain[i], b = particles.grain[j];
     if (a == b) return;
-    const Vec<2> d = x[j] - x[i];
     const double r = norm(d), overlap = R[i] + R[j] - r;
     if (!(overlap > 0) || r == 0) return;
     meet(a, overlap, (-0.6 / r) * d);
@@ -125,8 +124,10 @@ BpmSample fill_box(const BoxSample& box, const std::vector<Aggregate>& library, 
     }
   }
   sample.begin.push_back(static_cast<int>(position.size()));
+  const Box<2> bounds = box_of(box);
   sample.particles =
-      rigid_particles<2>(std::move(position), std::move(radius), std::move(mass), walls_of(box).walls);
+      rigid_particles<2>(std::move(position), std::move(radius), std::move(mass), bounds.walls);
+  sample.particles.cell = bounds.cell;
   sample.particles.grain = std::move(grain_of);
   sample.displaced = separate_grains(sample, box);
   return sample;

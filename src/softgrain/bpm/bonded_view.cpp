@@ -23,7 +23,8 @@ std::vector<ContactPoint> contact_points(const RigidDynamics<2>& dynamics, doubl
                       .normal = normal,
                       .position = particles.position[a] + particles.radius[a] * normal,
                       // a row of touching primaries: each takes its diameter of the outline
-                      .length = particles.radius[a] + particles.radius[wall ? a : b]});
+                      .length = particles.radius[a] + particles.radius[wall ? a : b],
+                      .image = contacts.shift(c)});
   }
   return points;
 }

@@ -92,6 +92,7 @@ PlacedModel bonded_grains_of(const Case& c) {
   setup.options = rigid_step_options(c);
   setup.density = c.grain.density;
   Box<2> box(setup.particles.walls);
+  box.cell = setup.particles.cell;
   return {std::make_unique<BondedGrains>(std::move(setup)), std::move(box), dt};
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -20,6 +21,7 @@ enum class LoadingPath {
   compaction,  ///< grains in a box whose top wall comes down
   isotropic,   ///< grains in a box whose four walls come in
   biaxial,     ///< isotropic to a stress, then top and bottom wall come in while the side walls keep it
+  shear,       ///< isotropic to a stress, then simple shear of a periodic cell under that stress
   die,         ///< the top wall presses grains in a box, keeps the stress, and leaves
   relaxation,  ///< compaction, then rest
   stages,      ///< grains in a box, along stages of one's own
@@ -30,6 +32,7 @@ enum class Integrator {
   backward_euler,    ///< implicit
   symplectic_euler,  ///< explicit
 };
+enum class BoxEnd { walls, periodic };  ///< what ends a box along an axis
 enum class Formulation { total_lagrangian, updated_lagrangian };
 
 /// One experiment, complete: what a case file says, in SI units, with every default filled in. Per metre of
@@ -95,6 +98,8 @@ struct Case {
     double hold = 0;                  ///< rest of the wall at each turn and at the end [s]
     double hold_stress = 0;           ///< sigma that walls keep for `hold` before the end [Pa]; 0: none
     double confining_stress = 0;      ///< of the side walls of a biaxial path [Pa]
+    double shear_rate = 0;            ///< of a periodic cell [1/s]
+    double max_shear = 1;             ///< shear strain at the end
     double rest = 0;  ///< kinetic over stored energy that ends the rest of a relaxation; 0: none
   } loading;
 
@@ -121,6 +126,7 @@ struct Case {
   } sample;
 
   struct Box {
+    BoxEnd x = BoxEnd::walls, y = BoxEnd::walls;
     double width = 0, height = 0;  ///< of placed grains [m]; 0: as far as the grains reach
   } box;
 
@@ -134,6 +140,11 @@ struct Case {
 
 /// Grains in a box; else one grain between two walls.
 inline bool is_in_a_box(const Case& c) { return c.experiment.loading != LoadingPath::diametral; }
+/// A box that repeats along x, y.
+inline std::array<bool, 2> repeats_of(const Case& c) {
+  if (!is_in_a_box(c)) return {};
+  return {c.box.x == BoxEnd::periodic, c.box.y == BoxEnd::periodic};
+}
 inline bool is_isotropic(const Case& c) { return c.experiment.loading == LoadingPath::isotropic; }
 
 }  // namespace softgrain

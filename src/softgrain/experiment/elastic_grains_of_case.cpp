@@ -125,7 +125,7 @@ PlacedModel elastic_grains_of(const Case& c) {
   if (is_in_a_box(c)) {
     const BoxSample sample = sample_box(c);
     for (const PlacedGrain& grain : sample.grains) placed.push_back(placement(shape, grain));
-    box = walls_of(sample);
+    box = box_of(sample);
   } else {
     placed.push_back(placement(shape, {.centre = {}, .radius = c.grain.radius, .angle = 0}));
     box = box_of_grain(c, *shape);

@@ -7,11 +7,12 @@
 namespace softgrain {
 
 BoxSample sample_box(const Case& c) {
-  if (!c.sample.placed.empty()) return {c.box.width, c.box.height, c.sample.placed};
+  if (!c.sample.placed.empty()) return {c.box.width, c.box.height, repeats_of(c), c.sample.placed};
   return sample_box({.grains = c.sample.grains,
                      .sizes = diameter_law(c.sample),
                      .packing_fraction = c.sample.packing_fraction,
                      .aspect = c.sample.aspect,
+                     .repeats = repeats_of(c),
                      .seed = static_cast<std::uint64_t>(c.sample.seed)});
 }
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/model/scene_in_cell.hpp"
+#include "softgrain/observe/stress.hpp"
 #include "softgrain/state/archive.hpp"
 
 namespace softgrain {
@@ -14,7 +17,7 @@ Simulation::Simulation(std::unique_ptr<Model> model, Box<2> box, Loading loading
       loading_(std::move(loading)),
       dt_(dt),
       steps_planned_(loading_.steps_planned(dt)) {
-  row_.impulse.assign(box_.walls.size(), 0);
+  row_.impulse.assign(box_.faces(), 0);
 }
 
 Simulation::Simulation(const Simulation& other)
@@ -33,10 +36,18 @@ void Simulation::follow(WallMotion motion) {
 
 StepReport Simulation::step() {
   const bool over = finished();  // whoever goes on then has been told why
+  const Mat<2> before = box_.cell.gradient();
   loading_.drive(box_, *model_, time(), dt_);
+  const Mat<2> L = box_.cell.gradient();
+  if (!(L == before)) model_->follow(L - before);
   const StepReport report = model_->step(box_, dt_);
   ++step_;
-  for (std::size_t w = 0; w < box_.walls.size(); ++w) row_.impulse[w] += box_.outward_impulse(w);
+  if (box_.cell.any()) {
+    box_.shear += dt_ * L(0, 1);
+    box_.moment =
+        (dt_ * box_.volume()) * contact_stress(model_->contacts(), model_->centres(), box_.volume());
+  }
+  for (std::size_t w = 0; w < box_.faces(); ++w) row_.impulse[w] += box_.outward_impulse(w);
   row_.duration += dt_;
   loading_.after_step(box_, time(), dt_, felt_in(report));
   if (!over && model_->is_exhausted(report, box_)) loading_.end(Loading::End::exhausted);
@@ -47,7 +58,7 @@ StepReport Simulation::step() {
 StepFelt Simulation::felt_in(const StepReport& report) const {
   StepFelt felt{.overlap_mean = report.overlap_mean, .unrest = 0};
   if (!loading_.asks_for_rest()) return felt;
-  const Energies energies = model_->energies();
+  const Energies energies = this->energies();
   felt.unrest = energies.kinetic / std::abs(energies.stored);
   return felt;
 }
@@ -76,11 +87,13 @@ Observation Simulation::observe() const {
                   .leg = loading_.number(),
                   .height = box_.height(),
                   .wall_force = row_.impulse,
+                  .shear = {},
                   .packing = {},
-                  .energies = model_->energies(),
+                  .energies = energies(),
                   .numbers = model_->numbers(box_),
                   .means = {}};
   for (double& force : now.wall_force) force /= row_.duration > 0 ? row_.duration : dt_;
+  if (box_.cell.any()) now.shear = box_.shear;
   if (box_.closed()) {
     now.width = box_.width();
     now.packing = packing();
@@ -91,12 +104,38 @@ Observation Simulation::observe() const {
   return now;
 }
 
+/// Bodies with their velocities over L x_c, at which a periodic cell carries their grains.
+Bodies Simulation::peculiar_bodies() const {
+  Bodies bodies = model_->bodies();
+  if (!box_.cell.any()) return bodies;
+  const Mat<2> L = box_.cell.gradient();
+  const std::vector<Vec<2>> centre = model_->centres();
+  for (std::size_t i = 0; i < bodies.velocity.size(); ++i)
+    bodies.velocity[i] -= L * centre[static_cast<std::size_t>(bodies.grain[i])];
+  return bodies;
+}
+
+/// In a periodic cell the energy of motion is that over L x_c; the rest is the cell's.
+Energies Simulation::energies() const {
+  Energies energies = model_->energies();
+  if (!box_.cell.any()) return energies;
+  const Bodies bodies = model_->bodies(), peculiar = peculiar_bodies();
+  double carried = 0;
+  for (std::size_t i = 0; i < bodies.mass.size(); ++i)
+    carried +=
+        0.5 * bodies.mass[i] *
+        (dot(bodies.velocity[i], bodies.velocity[i]) - dot(peculiar.velocity[i], peculiar.velocity[i]));
+  energies.kinetic -= carried;
+  energies.wall_work -= carried;
+  return energies;
+}
+
 PackingMeasures Simulation::packing() const {
   const std::vector<double> radius = model_->radii();
   const std::vector<Vec<2>> centre = model_->centres();
   const std::vector<ContactPoint> contacts = model_->contacts();
   const Outlines outlines = model_->outlines();
-  const Bodies bodies = model_->bodies();
+  const Bodies bodies = peculiar_bodies();
   return measure_packing({.width = box_.width(),
                           .height = box_.height(),
                           .radius = radius,
@@ -108,7 +147,7 @@ PackingMeasures Simulation::packing() const {
                           .mass = bodies.mass,
                           .velocity = bodies.velocity,
                           .density = model_->density(),
-                          .strain_rate = box_.strain_rate(1)});
+                          .strain_rate = largest_rate()});
 }
 
 void Simulation::begin_row() {
@@ -117,14 +156,31 @@ void Simulation::begin_row() {
   model_->begin_row();
 }
 
+/// The largest of the strain rates [1/s], by which inertia is measured.
+double Simulation::largest_rate() const {
+  if (!box_.cell.any()) return box_.strain_rate(1);
+  double largest = 0;
+  const Mat<2> L = box_.cell.gradient();
+  for (int axis = 0; axis < 2; ++axis) largest = std::max(largest, std::abs(box_.strain_rate(axis)));
+  return std::max(largest, std::abs(L(0, 1)));
+}
+
 Scene Simulation::scene() const {
   Scene scene = model_->scene(box_);
-  const double low = box_.low(1).point[1], high = box_.high(1).point[1];
-  const auto [left, right] =
-      box_.bounded(0) ? std::pair(box_.low(0).point[0], box_.high(0).point[0]) : model_->reach();
-  scene.wall_segments = {left, low, right, low, left, high, right, high};  // in the order of BoxWall
+  if (box_.cell.any()) move_into_cell(box_.cell, model_->centres(), scene);
+  const double low = box_.bounded(1) ? box_.low(1).point[1] : 0,
+               high = box_.bounded(1) ? box_.high(1).point[1] : box_.height();
+  const double tilt = box_.repeats(1) ? box_.cell.edges(0, 1) : 0;
+  auto [left, right] = std::pair(0.0, box_.width());
   if (box_.bounded(0))
-    scene.wall_segments.insert(scene.wall_segments.end(), {left, low, left, high, right, low, right, high});
+    left = box_.low(0).point[0], right = box_.high(0).point[0];
+  else if (!box_.repeats(0))
+    std::tie(left, right) = model_->reach();
+  scene.wall_segments = {left,        low,  right,        low,
+                         left + tilt, high, right + tilt, high};  // in the order of BoxWall
+  if (box_.faces() == 4)
+    scene.wall_segments.insert(scene.wall_segments.end(),
+                               {left, low, left + tilt, high, right, low, right + tilt, high});
   return scene;
 }
 

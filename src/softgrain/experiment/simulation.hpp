@@ -57,7 +57,7 @@ class Simulation final {
   /// steps since `begin_row`.
   Observation observe() const;
   void begin_row();
-  Energies energies() const { return model_->energies(); }
+  Energies energies() const;
   Scene scene() const;
   std::vector<GrainView> grains() const { return model_->grains(); }
   const Model& model() const { return *model_; }
@@ -80,6 +80,8 @@ class Simulation final {
   };
   StepFelt felt_in(const StepReport& report) const;
   PackingMeasures packing() const;
+  Bodies peculiar_bodies() const;
+  double largest_rate() const;
 
   std::unique_ptr<Model> model_;
   Box<2> box_;

@@ -21,6 +21,9 @@ Stage rest(double time) { return {.name = "rest", .until = {.time = time}}; }
 /// Of top and bottom wall: side walls of a biaxial path, which make room for a box that flattens.
 constexpr double side_speed = 5;
 
+/// What presses along y: the top wall, or the cell.
+Part pressing(const Case& c) { return repeats_of(c)[1] ? Part::yy : Part::top; }
+
 /// What a short form leaves its path for.
 std::vector<Exit> exits_of(const Case& c) {
   std::vector<Exit> exits;
@@ -37,7 +40,7 @@ std::vector<Exit> exits_of(const Case& c) {
 /// Diametral, compaction and isotropic.
 std::vector<Stage> turning(const Case& c) {
   const Case::Loading& loading = c.loading;
-  const Part part = is_isotropic(c) ? Part::all : Part::top;
+  const Part part = is_isotropic(c) ? Part::all : pressing(c);
   std::vector<Stage> stages;
   const auto go_to = [&](double strain) {
     Stage stage{.name = "move", .drives = {at_velocity(part, loading.wall_velocity)}, .towards = true};
@@ -55,7 +58,7 @@ std::vector<Stage> turning(const Case& c) {
   for (Stage& stage : stages) stage.exits = exits_of(c);
   if (!is_in_a_box(c) || loading.hold_stress == 0) return stages;
   Stage hold{.name = "hold",
-             .drives = {keeps(Part::top, loading.hold_stress)},
+             .drives = {keeps(pressing(c), loading.hold_stress)},
              .until = {.time = loading.hold},
              .only_by_exit = true,
              .key = "loading.hold_stress"};
@@ -65,7 +68,8 @@ std::vector<Stage> turning(const Case& c) {
   return stages;
 }
 
-std::vector<Stage> biaxial(const Case& c) {
+/// Isotropic to the confining stress, which is then kept for a while.
+std::vector<Stage> confined(const Case& c) {
   const double v = c.loading.wall_velocity, confining = c.loading.confining_stress;
   Stage confine{.name = "confine",
                 .drives = {at_velocity(Part::all, v)},
@@ -76,6 +80,12 @@ std::vector<Stage> biaxial(const Case& c) {
                    .drives = {keeps(Part::yy, confining), keeps(Part::xx, confining)},
                    .until = {.time = c.loading.hold},
                    .key = "loading.confining_stress"};
+  if (c.loading.hold == 0) return {confine};
+  return {confine, keep};
+}
+
+std::vector<Stage> biaxial(const Case& c) {
+  const double v = c.loading.wall_velocity, confining = c.loading.confining_stress;
   Stage compress{.name = "compress",
                  .drives = {at_velocity(Part::yy, v), keeps(Part::xx, confining)},
                  .key = "loading.confining_stress"};
@@ -83,8 +93,21 @@ std::vector<Stage> biaxial(const Case& c) {
   compress.until.strain[0] = c.loading.max_strain;
   if (c.loading.max_stress > 0)
     compress.exits = {{.stress = c.loading.max_stress, .key = "loading.max_stress"}};
-  if (c.loading.hold == 0) return {confine, compress};
-  return {confine, keep, compress};
+  std::vector<Stage> stages = confined(c);
+  stages.push_back(compress);
+  return stages;
+}
+
+/// Simple shear of a periodic cell while it keeps the vertical stress.
+std::vector<Stage> shear(const Case& c) {
+  Stage shear{.name = "shear",
+              .drives = {{.part = Part::xy, .control = Control::rate, .value = c.loading.shear_rate},
+                         keeps(Part::yy, c.loading.confining_stress)},
+              .key = "loading.confining_stress"};
+  shear.until.strain[2] = c.loading.max_shear;
+  std::vector<Stage> stages = confined(c);
+  stages.push_back(shear);
+  return stages;
 }
 
 std::vector<Stage> die(const Case& c) {
@@ -102,7 +125,8 @@ std::vector<Stage> die(const Case& c) {
 }
 
 std::vector<Stage> relaxation(const Case& c) {
-  Stage press{.name = "press", .drives = {at_velocity(Part::top, c.loading.wall_velocity)}, .towards = true};
+  Stage press{
+      .name = "press", .drives = {at_velocity(pressing(c), c.loading.wall_velocity)}, .towards = true};
   press.until.strain[0] = last_strain(c);
   press.exits = exits_of(c);
   Stage relax = rest(c.loading.hold);
@@ -169,7 +193,8 @@ void check_loading(const Case& c) {
   require(loading.hold_stress == 0 || loading.hold > 0,
           "loading.hold_stress {} Pa needs loading.hold > 0: for how long", loading.hold_stress);
   const LoadingPath path = c.experiment.loading;
-  if (path != LoadingPath::biaxial && path != LoadingPath::die && path != LoadingPath::relaxation)
+  if (path != LoadingPath::biaxial && path != LoadingPath::shear && path != LoadingPath::die &&
+      path != LoadingPath::relaxation)
     check_turns(loading);
 }
 
@@ -178,6 +203,8 @@ std::vector<Stage> stages_of(const Case& c) {
   switch (c.experiment.loading) {
     case LoadingPath::biaxial:
       return biaxial(c);
+    case LoadingPath::shear:
+      return shear(c);
     case LoadingPath::die:
       return die(c);
     case LoadingPath::relaxation:

@@ -1,10 +1,9 @@
 #pragma once
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <initializer_list>
 #include <vector>
 
+#include "softgrain/geometry/periodic_cell.hpp"
 #include "softgrain/geometry/press.hpp"
 #include "softgrain/geometry/wall.hpp"
 #include "softgrain/math/vec.hpp"
@@ -19,10 +18,14 @@ enum BoxWall : int { bottom_wall, top_wall, left_wall, right_wall };
 /// alone owns the walls, and what each felt.
 template <int Dim>
 struct Box {
-  std::vector<Wall<Dim>> walls;      ///< bottom, top, then left, right, ... of the axes that have walls
-  std::vector<Vec<Dim>> impulse;     ///< (walls) of the grains on each in the last step [N s/m in 2D]
-  std::array<double, Dim> period{};  ///< [m] along each axis, 0: not periodic
-  std::vector<Press> presses;        ///< that move some of the walls; no wall belongs to two
+  std::vector<Wall<Dim>> walls;   ///< bottom, top, then left, right, ... of the axes that have walls
+  std::vector<Vec<Dim>> impulse;  ///< (walls) of the grains on each in the last step [N s/m in 2D]
+  std::vector<Press> presses;     ///< that move some of the walls; no wall belongs to two
+  PeriodicCell<Dim> cell;         ///< along the axes without walls
+  double shear = 0;               ///< gamma, the integral of L_xy dt
+  /// sum_c P_c (x) l_c of the last step [N s m in 2D]: P of grain a on grain b, l the way from the centre of
+  /// a to that of b, or to a wall; of a cell that repeats
+  Mat<Dim> moment{};
 
   Box() = default;
   Box(std::initializer_list<Wall<Dim>> all) : Box(std::vector<Wall<Dim>>(all)) {}
@@ -30,18 +33,21 @@ struct Box {
 
   /// True if walls face each other along the axis.
   bool bounded(int axis) const { return walls.size() >= 2 * static_cast<std::size_t>(Dim - axis); }
-  /// True if every axis has walls or a period.
+  bool repeats(int axis) const { return cell.repeats[static_cast<std::size_t>(axis)]; }
+  /// True if every axis has walls or repeats.
   bool closed() const {
     for (int axis = 0; axis < Dim; ++axis)
-      if (!bounded(axis) && period[static_cast<std::size_t>(axis)] == 0) return false;
+      if (!bounded(axis) && !repeats(axis)) return false;
     return true;
   }
+  /// Faces of the box in the order of BoxWall: walls, or ends of the cell.
+  std::size_t faces() const { return closed() ? 2 * Dim : walls.size(); }
   const Wall<Dim>& low(int axis) const { return walls[2 * static_cast<std::size_t>(Dim - 1 - axis)]; }
   const Wall<Dim>& high(int axis) const { return walls[2 * static_cast<std::size_t>(Dim - 1 - axis) + 1]; }
 
-  /// Distance of the walls along an axis, or the period [m].
+  /// Distance of the walls along an axis, or of the ends of the cell [m].
   double length(int axis) const {
-    if (!bounded(axis)) return period[static_cast<std::size_t>(axis)];
+    if (!bounded(axis)) return repeats(axis) ? cell.edges(axis, axis) : 0;
     return high(axis).point[axis] - low(axis).point[axis];
   }
   double height() const { return length(Dim - 1); }
@@ -54,16 +60,14 @@ struct Box {
   }
   /// L_kk = (v_high - v_low)/length [1/s], negative in compression.
   double strain_rate(int axis) const {
+    if (!bounded(axis)) return cell.gradient()(axis, axis);
     return (high(axis).velocity[axis] - low(axis).velocity[axis]) / length(axis);
   }
 
-  /// b - a, along each periodic axis to the nearest image of b [m].
-  Vec<Dim> difference(const Vec<Dim>& a, const Vec<Dim>& b) const {
-    Vec<Dim> d = b - a;
-    for (int axis = 0; axis < Dim; ++axis)
-      if (const double L = period[static_cast<std::size_t>(axis)]; L > 0)
-        d[axis] -= L * std::round(d[axis] / L);
-    return d;
+  /// Walls and cell go on for dt [s].
+  void advance(double dt) {
+    for (Wall<Dim>& wall : walls) wall.point += dt * wall.velocity;
+    cell.advance(dt);
   }
 
   /// The speed of a press by the velocities of its walls [m/s].
@@ -78,8 +82,13 @@ struct Box {
       if (press.share[w] != 0) walls[w].velocity = (press.share[w] * v) * walls[w].normal;
   }
 
-  /// What presses a wall outwards in the last step [N s/m in 2D].
-  double outward_impulse(std::size_t wall) const { return -dot(impulse[wall], walls[wall].normal); }
+  /// What presses a face outwards in the last step [N s/m in 2D]: on an end of the cell, moment_kk/length_k,
+  /// as at rest on a wall there.
+  double outward_impulse(std::size_t face) const {
+    if (face < walls.size()) return -dot(impulse[face], walls[face].normal);
+    const int axis = Dim - 1 - static_cast<int>(face / 2);
+    return moment(axis, axis) / length(axis);
+  }
 
   void visit(StateVisitor& visit) {
     std::vector<Vec<Dim>> point;
@@ -87,6 +96,20 @@ struct Box {
     visit({"wall_point", "m", Owner::wall, Role::state, "point on each wall: bottom, top, left, right"},
           point);
     for (std::size_t w = 0; w < walls.size(); ++w) walls[w].point = point[w];
+    if (cell.any()) visit_cell(visit);
+  }
+
+ private:
+  void visit_cell(StateVisitor& visit) {
+    visit_matrix(visit,
+                 {"cell", "m", Owner::run, Role::state, "lattice vectors of the periodic cell, as columns"},
+                 cell.edges);
+    visit_matrix(visit, {"cell_rate", "m/s", Owner::run, Role::state, "their velocities"}, cell.rate);
+    visit_matrix(visit,
+                 {"cell_moment", "N s", Owner::run, Role::state,
+                  "sum of impulse times branch vector over the contacts of the last step"},
+                 moment);
+    visit({"shear_strain", "", Owner::run, Role::state, "of the periodic cell"}, shear);
   }
 };
 

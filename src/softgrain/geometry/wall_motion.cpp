@@ -4,13 +4,25 @@
 
 namespace softgrain {
 
-void check_wall_motion(std::span<const Wall<2>> walls, double dt, double smallest_radius) {
+namespace {
+
+void check_motion(double motion, double smallest_radius, std::string_view what) {
+  if (!(motion <= smallest_radius / 10))
+    throw NumericalError(
+        fmt::format("{} moves by {:.3g} m in a step, more than a tenth of the smallest radius {:.3g} m; use "
+                    "a smaller time "
+                    "step or a slower {}",
+                    what, motion, smallest_radius, what.substr(0, what.find(' '))));
+}
+
+}  // namespace
+
+void check_wall_motion(const Box<2>& box, double dt, double smallest_radius) {
+  const std::vector<Wall<2>>& walls = box.walls;
+  const Mat<2>& rate = box.cell.rate;
+  if (box.cell.any()) check_motion(dt * std::sqrt(contract(rate, rate)), smallest_radius, "cell");
   for (std::size_t a = 0; a < walls.size(); ++a) {
-    if (const double motion = dt * norm(walls[a].velocity); !(motion <= smallest_radius / 10))
-      throw NumericalError(fmt::format(
-          "wall {} moves by {:.3g} m in a step, more than a tenth of the smallest radius {:.3g} m; use a "
-          "smaller time step or a slower wall",
-          a, motion, smallest_radius));
+    check_motion(dt * norm(walls[a].velocity), smallest_radius, fmt::format("wall {}", a));
     for (std::size_t b = 0; b < a; ++b)
       if (dot(walls[a].normal, walls[b].normal) < -0.5 &&
           !(dot(walls[a].point - walls[b].point, walls[b].normal) > 0))
@@ -19,7 +31,8 @@ void check_wall_motion(std::span<const Wall<2>> walls, double dt, double smalles
   }
 }
 
-AffineMotion::AffineMotion(std::span<const Wall<2>> walls) {
+AffineMotion::AffineMotion(const Box<2>& box) : gradient(box.cell.gradient()) {
+  const std::vector<Wall<2>>& walls = box.walls;
   constexpr double along = 1 - 1e-9;  // the axis
   for (int d = 0; d < 2; ++d)
     for (const Wall<2>& low : walls)

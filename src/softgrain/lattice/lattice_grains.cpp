@@ -58,6 +58,7 @@ Bodies LatticeGrains::bodies() const {
   for (const PointGrain& grain : dynamics_.grains) {
     for (const double V : grain.volume) points.mass.push_back(density() * V);
     points.velocity.insert(points.velocity.end(), grain.velocity.begin(), grain.velocity.end());
+    points.grain.resize(points.velocity.size(), static_cast<int>(&grain - dynamics_.grains.data()));
   }
   return points;
 }

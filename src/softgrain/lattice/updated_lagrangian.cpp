@@ -57,9 +57,9 @@ UpdatedLagrangianDynamics::UpdatedLagrangianDynamics(std::vector<PointGrain> poi
 }
 
 SoftStepReport UpdatedLagrangianDynamics::step(double dt) {
-  check_wall_motion(box.walls, dt, smallest_radius_);
-  damping_ = {options.damping, dt, box.walls};
-  for (Wall<2>& wall : box.walls) wall.point += dt * wall.velocity;
+  check_wall_motion(box, dt, smallest_radius_);
+  damping_ = {options.damping, dt, box};
+  box.advance(dt);
   work.internal += kinetic_energy_of_points();
   find_stencils();
   gather_momentum();  // m_i v_i = sum_p N_i m_p v_p

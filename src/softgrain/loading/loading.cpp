@@ -11,35 +11,13 @@ namespace {
 /// Strain over which the stress is averaged.
 constexpr double averaging_strain = 1e-3;
 
-/// Of the way of a stage: less is no step more.
-constexpr double rounding = 1e-9;
-
-double target_of(const Drive& drive, double time) {
-  if (drive.amplitude == 0) return drive.value;
-  return drive.value + drive.amplitude * wave_at(drive.wave, time, drive.period);
-}
-
-double side_of_wall(const Box<2>& box, std::size_t wall) {
-  return wall <= top_wall ? box.width() : box.height();
-}
-
-/// sum_w share_w l_w [m]: what a stress on these walls presses on.
-double pressed_length(const std::array<double, 4>& share, const Box<2>& box) {
-  double length = 0;
-  for (std::size_t w = 0; w < box.walls.size(); ++w)
-    if (share[w] != 0) length += share[w] * side_of_wall(box, w);
-  return length;
-}
-
-std::size_t number_of(Part part) { return static_cast<std::size_t>(part); }
-
 std::int64_t steps_in(double time, double dt) { return std::llround(time / dt); }
 
 }  // namespace
 
 Loading::Loading(const std::vector<Stage>& stages, const LoadingFrame& frame, const Box<2>& box)
     : stages_(without_repeats(stages)), frame_(frame) {
-  for (int c = 0; c < 2; ++c) frame_.start[c] = length_at_stage_[c] = length(box, c);
+  for (int c = 0; c < 3; ++c) frame_.start[c] = length_at_stage_[c] = length(box, c);
   if (frame_.measure.kind == StrainMeasure::Kind::of_box) frame_.measure.length = frame_.start[0];
   plan_stages();
 }
@@ -49,17 +27,20 @@ void Loading::plan_stages() { planned_ = plan(stages_, frame_, travel_start_); }
 /// The stages that are left, from where the present one began.
 void Loading::plan_rest() {
   const auto planned = plan(std::span(stages_).subspan(stage_), frame_,
-                            {frame_.start[0] - length_at_stage_[0], frame_.start[1] - length_at_stage_[1]});
+                            {frame_.start[0] - length_at_stage_[0], frame_.start[1] - length_at_stage_[1],
+                             frame_.start[2] - length_at_stage_[2]});
   std::copy(planned.begin(), planned.end(), planned_.begin() + static_cast<std::ptrdiff_t>(stage_));
 }
 
 double Loading::length(const Box<2>& box, int component) const {
-  return box.bounded(1 - component) ? box.length(1 - component) : frame_.start[component];
+  if (component == 2) return -box.shear;
+  const int axis = 1 - component;
+  return box.bounded(axis) || box.repeats(axis) ? box.length(axis) : frame_.start[component];
 }
 
 void Loading::begin_at(StateVisitor& visit, const Box<2>& box) {
   visit_start(visit);
-  for (int c = 0; c < 2; ++c) {
+  for (int c = 0; c < 3; ++c) {
     length_at_stage_[c] = length(box, c);
     travel_start_[c] = frame_.start[c] - length_at_stage_[c];
   }
@@ -103,105 +84,25 @@ void Loading::drive(Box<2>& box, const Model& model, double time, double dt) {
   closing_ = {};
   box.presses.clear();
   for (Wall<2>& wall : box.walls) wall.velocity = {};
+  box.cell.remap();
+  box.cell.rate = {};
   if (stage_ >= stages_.size()) return;  // whoever goes on, the walls rest
   const Stage& stage = stage_now();
   if (stage.until.time) last_of_stage_ = time - stage_start_ + 1.5 * dt > *stage.until.time;
   Speeds speeds = speeds_of(stage, box, time, dt);
-  for (int c = 0; c < 2; ++c) closing_[c] = closing_speed(stage, speeds, c);
+  for (int c = 0; c < 3; ++c) closing_[c] = closing_speed(stage, speeds, c);
   end_at_strain(stage, box, speeds, dt);
+  for (std::size_t d = 0; d < stage.drives.size(); ++d)
+    if (stage.drives[d].control == Control::stress && moves_cell(stage.drives[d], box))
+      speeds[d] = push_cell(stage.drives[d], box, model, time, dt);
+  if (box.cell.any()) move_cell(stage, speeds, box);
   for (std::size_t d = 0; d < stage.drives.size(); ++d) {
     const auto share = share_of(stage.drives[d].part, frame_.aspect);
     for (std::size_t w = 0; w < box.walls.size(); ++w)
       // from 0: a wall that rests has no negative zeros
       if (share[w] != 0) box.walls[w].velocity = Vec<2>{} + (share[w] * speeds[d]) * box.walls[w].normal;
-    if (stage.drives[d].control == Control::stress)
+    if (stage.drives[d].control == Control::stress && !moves_cell(stage.drives[d], box))
       box.presses.push_back(press_of(stage.drives[d], box, model, time, dt));
-  }
-}
-
-Loading::Speeds Loading::speeds_of(const Stage& stage, const Box<2>& box, double time, double dt) const {
-  Speeds speeds{};
-  for (std::size_t d = 0; d < stage.drives.size(); ++d) {
-    const Drive& drive = stage.drives[d];
-    const int component = 1 - axis_of(drive.part);
-    if (drive.control == Control::velocity) speeds[d] = drive.value;
-    if (drive.control == Control::rate) speeds[d] = drive.value * length(box, component);
-    if (drive.control == Control::strain) speeds[d] = speed_to_strain(drive, box, time, dt);
-    if (drive.control == Control::stress) speeds[d] = press_speed_[number_of(drive.part)];
-    if (stage.towards && stage.until.strain[0]) {
-      const double start = frame_.start[0] - length_at_stage_[0];
-      speeds[d] = std::copysign(speeds[d], frame_.travel(0, *stage.until.strain[0]) - start);
-    }
-  }
-  if (motion_.velocity && stage_ == 0) {
-    speeds[0] = -motion_.velocity(time);
-    require(std::isfinite(speeds[0]), "the motion asks for {} m/s at {} s", -speeds[0], time);
-  }
-  return speeds;
-}
-
-/// That brings the walls to l_0 e^(-A wave(t)), l_0 their distance at the start of the stage.
-double Loading::speed_to_strain(const Drive& drive, const Box<2>& box, double time, double dt) const {
-  const int component = 1 - axis_of(drive.part);
-  const double wave = wave_at(drive.wave, time + dt - stage_start_, drive.period);
-  const double aim = length_at_stage_[component] * std::exp(-drive.amplitude * wave);
-  return (length(box, component) - aim) / dt;
-}
-
-/// Of the walls that are given a velocity.
-double Loading::closing_speed(const Stage& stage, const Speeds& speeds, int component) const {
-  double closing = 0;
-  for (std::size_t d = 0; d < stage.drives.size(); ++d)
-    if (stage.drives[d].is_given())
-      closing += closing_share(stage.drives[d].part, component, frame_.aspect) * speeds[d];
-  return closing;
-}
-
-/// In the last step of a stage walls make what is left of their way to its strain.
-void Loading::end_at_strain(const Stage& stage, const Box<2>& box, Speeds& speeds, double dt) {
-  for (int c = 0; c < 2; ++c) {
-    if (!stage.until.strain[c] || closing_[c] == 0) continue;
-    const bool alone = std::all_of(stage.drives.begin(), stage.drives.end(), [&](const Drive& drive) {
-      return drive.is_given() || closing_share(drive.part, c, 1) == 0 || drive.control == Control::rest;
-    });
-    if (!alone) continue;
-    const double to = frame_.travel(c, *stage.until.strain[c]), closing = closing_[c];
-    const double way = std::abs(to - (frame_.start[c] - length_at_stage_[c]));
-    double left = to - (frame_.start[c] - length(box, c));
-    if (left / closing > dt + rounding * way / std::abs(closing)) continue;
-    if (left * closing < 0 && !stage.towards) left = 0;  // the strain is past already
-    last_of_stage_ = true;
-    for (std::size_t d = 0; d < stage.drives.size(); ++d)
-      if (stage.drives[d].is_given()) speeds[d] = (left / dt) * (speeds[d] / closing);
-    return;
-  }
-}
-
-Press Loading::press_of(const Drive& drive, const Box<2>& box, const Model& model, double time,
-                        double dt) const {
-  const auto share = share_of(drive.part, frame_.aspect);
-  const double pressed = pressed_length(share, box);
-  const PressBody body = model.press_body(box, axis_of(drive.part), dt);
-  const std::size_t part = number_of(drive.part);
-  return {.share = {share[0], share[1], share[2], share[3]},
-          .force = target_of(drive, time + dt - stage_start_) * pressed,
-          .mass = body.mass * pressed,
-          .damper = body.damper * pressed,
-          .most = drive.speed > 0 ? drive.speed : frame_.wall_velocity,
-          .speed = press_speed_[part],
-          .mean_force = press_force_[part],
-          .waiting = press_waiting_[part]};
-}
-
-void Loading::keep_presses(const Box<2>& box) {
-  if (stage_ >= stages_.size()) return;
-  std::size_t press = 0;
-  for (const Drive& drive : stage_now().drives) {
-    if (drive.control != Control::stress || press >= box.presses.size()) continue;
-    const std::size_t part = number_of(drive.part);
-    press_speed_[part] = box.presses[press].speed;
-    press_force_[part] = box.presses[press].mean_force;
-    press_waiting_[part] = box.presses[press++].waiting;
   }
 }
 
@@ -228,7 +129,7 @@ void Loading::after_step(const Box<2>& box, double time, double dt, const StepFe
 /// The mean lags behind a stress that changes evenly, and its own mean lags behind it as far; where the walls
 /// rest there is no lag to make up for.
 double Loading::present_stress(std::size_t part) const {
-  const int component = 1 - axis_of(static_cast<Part>(part));
+  const int component = component_of(static_cast<Part>(part));
   return closing_[component] != 0 ? 2 * stress_[part] - stress_twice_[part] : stress_[part];
 }
 
@@ -241,7 +142,8 @@ void Loading::watch(const Box<2>& box, double dt) {
                        on(0) / below,
                        on(1) / below,
                        on(2) / beside,
-                       on(3) / beside};
+                       on(3) / beside,
+                       box.cell.any() ? -box.moment(0, 1) / (dt * box.volume()) : 0};
   for (std::size_t p = 0; p < parts_with_stress; ++p) {
     stress_[p] += share * (stress[p] - stress_[p]);
     stress_twice_[p] += share * (stress_[p] - stress_twice_[p]);
@@ -256,12 +158,8 @@ void Loading::judge_presses(const Box<2>& box, double time, double dt) {
   for (std::size_t d = 0; d < stage.drives.size(); ++d) {
     const Drive& drive = stage.drives[d];
     if (drive.control != Control::stress || done < 0) continue;
-    const auto share = share_of(drive.part, frame_.aspect);
-    double impulse = 0;
-    for (std::size_t w = 0; w < box.walls.size(); ++w)
-      if (share[w] != 0) impulse += share[w] * box.outward_impulse(w);
-    const double stress = impulse / dt / pressed_length(share, box);
-    held_[d].add(stress / target_of(drive, time - stage_start_), done, steps);
+    if (const double target = drive.target(time - stage_start_); target != 0)
+      held_[d].add(impulse_of(drive, box) / dt / pressed_length(drive, box) / target, done, steps);
   }
 }
 
@@ -277,7 +175,7 @@ void Loading::begin_stage(const Box<2>& box, double time) {
   ++number_;
   stage_start_ = time;
   stress_at_stage_ = stress_;
-  for (int c = 0; c < 2; ++c) length_at_stage_[c] = length(box, c);
+  for (int c = 0; c < 3; ++c) length_at_stage_[c] = length(box, c);
   if (!motion_.velocity) plan_rest();
   held_ = {};
   const OfParts speed = press_speed_, force = press_force_, waiting = press_waiting_;

@@ -27,10 +27,11 @@ struct StepFelt {
   double unrest = 0;  ///< kinetic over stored energy
 };
 
-/// Moves the walls of a box through the stages of a case, one after the other, and watches the stress. It
-/// speaks of times and strains, not of steps. A stage that ends at a strain is over in the step that makes
-/// what is left of the way, counted from the travel really made: no error of a stage, be it a rounding or a
-/// stage shorter than a step, reaches the next. Walls that keep a stress are presses, which the model moves.
+/// Moves the walls of a box, or a periodic cell, through the stages of a case, one after the other, and
+/// watches the stress. It speaks of times and strains, not of steps. A stage that ends at a strain is over in
+/// the step that makes what is left of the way, counted from the travel really made: no error of a stage, be
+/// it a rounding or a stage shorter than a step, reaches the next. Walls that keep a stress are presses,
+/// which the model moves.
 class Loading {
  public:
   /// Why a loading ends before its last stage; the numbers stand in snapshots.
@@ -88,7 +89,13 @@ class Loading {
   double speed_to_strain(const Drive& drive, const Box<2>& box, double time, double dt) const;
   void end_at_strain(const Stage& stage, const Box<2>& box, Speeds& speeds, double dt);
   Press press_of(const Drive& drive, const Box<2>& box, const Model& model, double time, double dt) const;
+  bool moves_cell(const Drive& drive, const Box<2>& box) const;
+  double pressed_length(const Drive& drive, const Box<2>& box) const;
+  double impulse_of(const Drive& drive, const Box<2>& box) const;
+  double push_cell(const Drive& drive, const Box<2>& box, const Model& model, double time, double dt);
+  void move_cell(const Stage& stage, const Speeds& speeds, Box<2>& box) const;
   void keep_presses(const Box<2>& box);
+  void keep_press(const Drive& drive, const Press& press);
 
   void watch(const Box<2>& box, double dt);
   double present_stress(std::size_t part) const;
@@ -98,7 +105,7 @@ class Loading {
   bool is_at_strain(const Box<2>& box, int component, double strain) const;
   bool is_at_stress(std::size_t part, double stress) const;
   bool is_at_limit(const Box<2>& box) const;
-  std::array<double, 2> strains_at_stage() const;
+  std::array<double, 3> strains_at_stage() const;
 
   void leave_stage(std::size_t next, const Box<2>& box, double time, double dt);
   void note_unkept();
@@ -120,18 +127,18 @@ class Loading {
   LoadingFrame frame_;
   std::vector<PlannedStage> planned_;
   WallMotion motion_;
-  std::array<double, 2> travel_start_{};  // where the first stage began [m]
+  std::array<double, 3> travel_start_{};  // where the first stage began [m]
 
   std::size_t stage_ = 0;                    // of the coming step
   double stage_start_ = 0;                   // [s]
-  std::array<double, 2> length_at_stage_{};  // of the box where it began [m]
+  std::array<double, 3> length_at_stage_{};  // of the box where it began [m]
   int number_ = 0, number_of_last_ = 0;
   double progress_at_stage_ = 0;  // when it began
   End ended_ = End::none;
   int exit_ = -1;                    // of the stage's exits, that ended the loading
   bool kept_last_ = false;           // an exit led to the last stage
   bool last_of_stage_ = false;       // of the coming step
-  std::array<double, 2> closing_{};  // speed at which walls come together, but for presses
+  std::array<double, 3> closing_{};  // speed at which walls come together, but for presses
 
   OfParts stress_{},
       stress_twice_{};         // mean of sigma over 0.1 % of strain at wall_velocity, and its mean [Pa]

@@ -21,7 +21,7 @@ const Exit* Loading::exit_taken(const StepFelt& felt) const {
 
 bool Loading::is_over(const Box<2>& box, const StepFelt& felt) const {
   const Until& until = stage_now().until;
-  for (int c = 0; c < 2 && !stage_now().towards; ++c)
+  for (int c = 0; c < 3 && !stage_now().towards; ++c)
     if (until.strain[c] && is_at_strain(box, c, *until.strain[c])) return true;
   for (std::size_t p = 0; p < parts_with_stress; ++p)
     if (until.stress[p] && is_at_stress(p, *until.stress[p])) return true;
@@ -32,8 +32,9 @@ bool Loading::is_over(const Box<2>& box, const StepFelt& felt) const {
   return frame_.packing_fraction * shrunk >= *until.packing_fraction;
 }
 
-std::array<double, 2> Loading::strains_at_stage() const {
-  return {frame_.strain(0, length_at_stage_[0]), frame_.strain(1, length_at_stage_[1])};
+std::array<double, 3> Loading::strains_at_stage() const {
+  return {frame_.strain(0, length_at_stage_[0]), frame_.strain(1, length_at_stage_[1]),
+          frame_.strain(2, length_at_stage_[2])};
 }
 
 /// From the side from which the stage comes.

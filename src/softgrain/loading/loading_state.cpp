@@ -7,7 +7,8 @@ namespace softgrain {
 
 void Loading::visit_start(StateVisitor& visit) {
   std::vector<double> start(frame_.start.begin(), frame_.start.end());
-  visit({"box_start", "m", Owner::run, Role::state, "height and width of the box where strains count from"},
+  visit({"box_start", "m", Owner::run, Role::state,
+         "height and width of the box where strains count from, and 0"},
         start);
   std::copy(start.begin(), start.end(), frame_.start.begin());
   if (frame_.measure.kind == StrainMeasure::Kind::of_box) frame_.measure.length = frame_.start[0];
@@ -31,7 +32,9 @@ void Loading::visit_stage(StateVisitor& visit) {
   };
   number("stage", "", "of the coming step", stage_);
   number("stage_start", "s", "when it began", stage_start_);
-  visit_numbers(visit, {"stage_box", "m", Owner::run, Role::state, "height and width of the box then"},
+  visit_numbers(visit,
+                {"stage_box", "m", Owner::run, Role::state,
+                 "height and width of the box then, and minus its shear strain"},
                 length_at_stage_);
   number("stage_number", "", "how many stages came before it", number_);
   number("stage_number_of_last", "", "before that of the last step", number_of_last_);
@@ -46,7 +49,7 @@ void Loading::visit_stresses(StateVisitor& visit) {
   const auto stresses = [&](std::string_view name, std::string_view text, OfParts& values) {
     visit_numbers(visit, {name, "Pa", Owner::run, Role::state, text}, values);
   };
-  stresses("stress_mean", "over 0.1 % of strain, of yy, xx, bottom, top, left, right", stress_);
+  stresses("stress_mean", "over 0.1 % of strain, of yy, xx, bottom, top, left, right, xy", stress_);
   stresses("stress_mean_of_mean", "the same mean of that mean", stress_twice_);
   stresses("stress_largest", "so far", largest_);
   stresses("stress_at_stage", "that mean where the stage began", stress_at_stage_);
@@ -54,7 +57,8 @@ void Loading::visit_stresses(StateVisitor& visit) {
                          OfParts& values) {
     visit_numbers(visit, {name, unit, Owner::run, Role::state, text}, values);
   };
-  press("press_speed", "m/s", "of walls that keep a stress: yy, xx, bottom, top, left, right", press_speed_);
+  press("press_speed", "m/s", "of walls that keep a stress: yy, xx, bottom, top, left, right, xy",
+        press_speed_);
   press("press_mean_force", "N/m", "the mean of what grains press them with", press_force_);
   press("press_waiting", "s", "for how long that has been too small, or too large", press_waiting_);
 }
@@ -87,10 +91,10 @@ void Loading::visit_held(StateVisitor& visit) {
 
 void Loading::visit(StateVisitor& visit) {
   visit_start(visit);
-  visit_numbers(
-      visit,
-      {"travel_start", "m", Owner::run, Role::state, "of the walls where the first stage began: yy, xx"},
-      travel_start_);
+  visit_numbers(visit,
+                {"travel_start", "m", Owner::run, Role::state,
+                 "of the walls where the first stage began: yy, xx; xy: shear strain"},
+                travel_start_);
   visit_stage(visit);
   visit_stresses(visit);
   visit_held(visit);

@@ -17,7 +17,7 @@ constexpr double last_strain_together = 3;
 /// Goes through the stages as they are foreseen.
 class Planner {
  public:
-  Planner(const LoadingFrame& frame, std::array<double, 2> travel) : frame_(frame), travel_(travel) {}
+  Planner(const LoadingFrame& frame, std::array<double, 3> travel) : frame_(frame), travel_(travel) {}
 
   PlannedStage go(const Stage& stage) {
     set_speeds(stage);
@@ -25,7 +25,7 @@ class Planner {
     const auto sooner = [&](double time) {
       if (time < planned.time) planned = {time, false};
     };
-    for (int c = 0; c < 2; ++c)
+    for (int c = 0; c < 3; ++c)
       if (const auto& strain = stage.until.strain[c]) sooner(time_to(c, *strain, stage.towards));
     if (stage.until.packing_fraction) sooner(time_to_fraction(*stage.until.packing_fraction));
     if (const auto limit = limit_of(stage, strains()); limit)
@@ -37,15 +37,17 @@ class Planner {
 
  private:
   double length(int c) const { return frame_.start[c] - travel_[c]; }
-  std::array<double, 2> strains() const { return {frame_.strain(0, length(0)), frame_.strain(1, length(1))}; }
+  std::array<double, 3> strains() const {
+    return {frame_.strain(0, length(0)), frame_.strain(1, length(1)), frame_.strain(2, length(2))};
+  }
 
   void set_speeds(const Stage& stage) {
     speed_ = rate_ = {};
     for (const Drive& drive : stage.drives)
-      for (int c = 0; c < 2; ++c) {
+      for (int c = 0; c < 3; ++c) {
         const double share = closing_share(drive.part, c, frame_.aspect);
         if (drive.control == Control::velocity) speed_[c] += share * drive.value;
-        if (drive.control == Control::rate) rate_[c] += share * drive.value;
+        if (drive.control == Control::rate) (c == 2 ? speed_ : rate_)[c] += share * drive.value;
       }
   }
 
@@ -62,7 +64,7 @@ class Planner {
 
   /// All strain is taken to fall to the components as at the start.
   double time_to_fraction(double packing_fraction) {
-    const std::array<double, 2> now = strains();
+    const std::array<double, 3> now = strains();
     const double way = std::log(packing_fraction / frame_.packing_fraction) - now[0] - now[1];
     const double yy = rate_[0] + speed_[0] / length(0), xx = rate_[1] + speed_[1] / length(1);
     if (!(way > 0) || yy + xx <= 0) return way > 0 ? infinite : 0;
@@ -71,24 +73,26 @@ class Planner {
   }
 
   void advance(double time) {
-    for (int c = 0; c < 2; ++c) {
+    for (int c = 0; c < 3; ++c) {
       travel_[c] += speed_[c] * time;
       if (rate_[c] != 0) travel_[c] += length(c) * -std::expm1(-rate_[c] * time);
     }
   }
 
   const LoadingFrame& frame_;
-  std::array<double, 2> travel_;
-  std::array<double, 2> speed_{}, rate_{};  // at which walls come together [m/s], [1/s]
+  std::array<double, 3> travel_;
+  std::array<double, 3> speed_{}, rate_{};  // at which walls come together [m/s], [1/s]
 };
 
 }  // namespace
 
 double LoadingFrame::strain(int component, double length) const {
+  if (component == 2) return start[2] - length;
   return component == 0 ? measure.strain(start[0], length) : std::log(start[1] / length);
 }
 
 double LoadingFrame::travel(int component, double strain) const {
+  if (component == 2) return strain;
   return component == 0 ? measure.travel(strain) : -start[1] * std::expm1(-strain);
 }
 
@@ -100,18 +104,19 @@ std::int64_t PlannedStage::steps(double dt) const {
 }
 
 std::vector<PlannedStage> plan(std::span<const Stage> stages, const LoadingFrame& frame,
-                               std::array<double, 2> travel) {
+                               std::array<double, 3> travel) {
   Planner planner(frame, travel);
   std::vector<PlannedStage> planned;
   for (const Stage& stage : stages) planned.push_back(planner.go(stage));
   return planned;
 }
 
-std::optional<StrainLimit> limit_of(const Stage& stage, const std::array<double, 2>& strain_at_start) {
-  if (stage.until.time || stage.until.strain[0] || stage.until.strain[1]) return std::nullopt;
+std::optional<StrainLimit> limit_of(const Stage& stage, const std::array<double, 3>& strain_at_start) {
+  if (stage.until.time || stage.until.strain[0] || stage.until.strain[1] || stage.until.strain[2])
+    return std::nullopt;
   for (const Drive& drive : stage.drives) {
     if (!drive.is_given() || drive.value == 0) continue;
-    const int component = 1 - axis_of(drive.part);
+    const int component = component_of(drive.part);
     const double start = strain_at_start[component];
     if (drive.value > 0) return StrainLimit{component, stage.limit.value_or(last_strain_together)};
     return StrainLimit{component, start > 0 ? 0 : start - 1};
@@ -120,6 +125,7 @@ std::optional<StrainLimit> limit_of(const Stage& stage, const std::array<double,
 }
 
 double closing_share(Part part, int component, double aspect) {
+  if (component == 2) return part == Part::xy ? 1 : 0;
   const auto share = share_of(part, aspect);
   return component == 0 ? share[0] + share[1] : share[2] + share[3];
 }

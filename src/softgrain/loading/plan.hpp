@@ -9,13 +9,14 @@
 
 namespace softgrain {
 
-/// What stages count in. Arrays by component: yy, xx.
+/// What stages count in. Arrays by component: yy, xx, xy. That of xy is gamma itself, and so are its travel,
+/// and -gamma its length.
 struct LoadingFrame {
-  StrainMeasure measure;              ///< of yy; xx counts as ln(w_start/w)
-  std::array<double, 2> start{1, 1};  ///< height and width where strains count from [m]
-  double wall_velocity = 1;           ///< of walls that keep a stress, at most; of averages [m/s]
-  double aspect = 1;                  ///< width over height
-  double packing_fraction = 0;        ///< Phi_0 where strains count from
+  StrainMeasure measure;                 ///< of yy; xx counts as ln(w_start/w)
+  std::array<double, 3> start{1, 1, 0};  ///< height and width where strains count from [m]
+  double wall_velocity = 1;              ///< of walls that keep a stress, at most; of averages [m/s]
+  double aspect = 1;                     ///< width over height
+  double packing_fraction = 0;           ///< Phi_0 where strains count from
 
   double strain(int component, double length) const;  ///< with this distance of the walls [m]
   double travel(int component, double strain) const;  ///< of the walls towards each other [m]
@@ -32,7 +33,7 @@ struct PlannedStage {
 /// Expected of each stage, with the walls so far from where strains count from [m]. A stage that ends at a
 /// stress is taken to go to its limit; what walls that keep a stress make of a strain is not foreseen.
 std::vector<PlannedStage> plan(std::span<const Stage> stages, const LoadingFrame& frame,
-                               std::array<double, 2> travel);
+                               std::array<double, 3> travel);
 
 /// A strain of a component.
 struct StrainLimit {
@@ -42,7 +43,7 @@ struct StrainLimit {
 
 /// Where walls stop that move without an end in strain or time: at 3 together; apart, where the run began, or
 /// 1 further.
-std::optional<StrainLimit> limit_of(const Stage& stage, const std::array<double, 2>& strain_at_start);
+std::optional<StrainLimit> limit_of(const Stage& stage, const std::array<double, 3>& strain_at_start);
 
 /// How much walls of a component come together when its part moves by 1.
 double closing_share(Part part, int component, double aspect);

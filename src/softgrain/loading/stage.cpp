@@ -13,6 +13,7 @@ constexpr std::size_t most_stages = 100'000;
 
 /// Do two parts move one wall?
 bool share_a_wall(Part a, Part b) {
+  if (a == b) return true;
   const auto of_a = share_of(a, 1), of_b = share_of(b, 1);
   for (std::size_t w = 0; w < of_a.size(); ++w)
     if (of_a[w] != 0 && of_b[w] != 0) return true;
@@ -31,7 +32,7 @@ std::string contradiction(const Stage& stage) {
     const bool swings = drive.control == Control::strain || drive.amplitude > 0;
     if (swings && drive.period <= 0)
       return fmt::format("{} swings, so it needs a period > 0", name_of(drive.part));
-    if (drive.control == Control::stress && drive.amplitude >= drive.value)
+    if (drive.control == Control::stress && drive.part != Part::xy && drive.amplitude >= drive.value)
       return fmt::format("{} would pull the grains: stress_amplitude must be below stress",
                          name_of(drive.part));
   }
@@ -75,6 +76,8 @@ std::array<double, 4> share_of(Part part, double aspect) {
       return {0, 0, 1, 0};
     case Part::right:
       return {0, 0, 0, 1};
+    case Part::xy:
+      return {};
     case Part::all:
       break;
   }
@@ -83,10 +86,16 @@ std::array<double, 4> share_of(Part part, double aspect) {
 
 int axis_of(Part part) { return part == Part::xx || part == Part::left || part == Part::right ? 0 : 1; }
 
+int component_of(Part part) { return part == Part::xy ? 2 : 1 - axis_of(part); }
+
 std::string_view name_of(Part part) {
-  constexpr std::array<std::string_view, number_of_parts> names{"yy",   "xx",    "bottom",   "top",
-                                                                "left", "right", "all walls"};
+  constexpr std::array<std::string_view, number_of_parts> names{"yy",   "xx",    "bottom", "top",
+                                                                "left", "right", "xy",     "all walls"};
   return names[static_cast<std::size_t>(part)];
+}
+
+double Drive::target(double time) const {
+  return amplitude == 0 ? value : value + amplitude * wave_at(wave, time, period);
 }
 
 bool Stage::is_driven(Control control) const {

@@ -11,8 +11,8 @@
 
 namespace softgrain {
 
-/// What a stage moves: a component is both walls of a pair, each of which makes half of the way, so that the
-/// box keeps its centre.
+/// What a stage moves: a component is both walls of a pair, or both ends of a periodic cell, each of which
+/// makes half of the way, so that the box keeps its centre.
 enum class Part : std::size_t {
   yy,      ///< bottom and top wall
   xx,      ///< left and right wall
@@ -20,22 +20,26 @@ enum class Part : std::size_t {
   top,
   left,
   right,
+  xy,   ///< shear of a cell that repeats along both axes: what lies higher goes to +x
   all,  ///< all four walls, the box keeping its shape; of the short forms
 };
-constexpr std::size_t number_of_parts = 7;
-/// Parts that have a stress: all but `all`.
-constexpr std::size_t parts_with_stress = 6;
+constexpr std::size_t number_of_parts = 8;
+/// Parts that have a stress: all but `all`. That of xy is -sigma_xy, which resists shear to +x.
+constexpr std::size_t parts_with_stress = 7;
 
 /// Share of the rate of a part that each wall makes along its normal, by BoxWall.
 std::array<double, 4> share_of(Part part, double aspect);
-/// 1 for what moves along y, 0 along x.
+constexpr std::size_t number_of(Part part) { return static_cast<std::size_t>(part); }
+/// 1 for what moves along y, or shears, 0 along x.
 int axis_of(Part part);
+/// 0: yy, 1: xx, 2: xy.
+int component_of(Part part);
 /// "yy", "top".
 std::string_view name_of(Part part);
 
 enum class Control {
   rest,
-  velocity,  ///< at which the walls come together [m/s], < 0: apart
+  velocity,  ///< at which the walls come together [m/s], < 0: apart; of xy the rate [1/s]
   rate,      ///< of the strain [1/s], compression positive
   stress,    ///< that the walls keep [Pa], compression positive
   strain,    ///< that swings about that at the start of the stage
@@ -52,6 +56,8 @@ struct Drive {
   double period = 0;     ///< of the wave [s]
   Wave wave = Wave::sine;
 
+  /// What it keeps or swings to at a time of its stage.
+  double target(double time) const;
   /// Does it say how fast its walls go, whatever the grains do?
   bool is_given() const { return control == Control::velocity || control == Control::rate; }
   friend bool operator==(const Drive&, const Drive&) = default;
@@ -60,7 +66,7 @@ struct Drive {
 /// What ends a stage: the first that holds. Strains count from the start of the run, compression positive.
 struct Until {
   std::optional<double> time{};                                   ///< since the stage began [s]
-  std::array<std::optional<double>, 2> strain{};                  ///< yy, xx
+  std::array<std::optional<double>, 3> strain{};                  ///< yy, xx; xy: gamma
   std::array<std::optional<double>, parts_with_stress> stress{};  ///< by Part [Pa]
   std::optional<double> packing_fraction{};                       ///< Phi_0
   std::optional<double> overlap{};                                ///< mean, as the column overlap_mean

@@ -25,7 +25,8 @@ struct Scene {
   /// number on.
   Arrays contacts;
   Arrays outlines;  ///< position (v, 2) of the outlines' vertices, grain (v): a new grain, a new polygon
-  std::vector<double> wall_segments;  ///< x0 y0 x1 y1 for each wall [m]
+  std::vector<double> wall_segments;  ///< x0 y0 x1 y1 for each wall, or edge of a periodic cell [m]
+  std::vector<double> cell;  ///< its lattice vectors, x0 y0 x1 y1, 0 for one that it has not [m]; or empty
 };
 
 /// Vectors where they lie in memory: component d of row i is begin[i * row + d * component].
@@ -53,6 +54,7 @@ struct Outlines {
 struct Bodies {
   std::vector<double> mass;      ///< [kg/m]
   std::vector<Vec<2>> velocity;  ///< [m/s]
+  std::vector<int> grain;        ///< to which each belongs
 };
 
 /// Mass and damper of a press, over the area of its walls.
@@ -88,6 +90,8 @@ class Model {
   virtual void visit(StateVisitor& visit) = 0;
   /// After a visitor has read the state: with this box the model is as if it had never stopped, bit for bit.
   virtual void go_on(const Box<2>&) {}
+  /// Each grain as a whole gets the velocity L x more, x its centre; the work that this takes is the walls'.
+  virtual void follow(const Mat<2>& /*L*/) {}
   /// Sums since the last row begin again.
   virtual void begin_row() {}
 

@@ -8,8 +8,13 @@ namespace {
 
 ContactPoint seen_from_first(const ContactPoint& p) {
   if (p.b < 0 || p.a < p.b) return p;
-  return {
-      .a = p.b, .b = p.a, .force = -p.force, .normal = -p.normal, .position = p.position, .length = p.length};
+  return {.a = p.b,
+          .b = p.a,
+          .force = -p.force,
+          .normal = -p.normal,
+          .position = p.position - p.image,
+          .length = p.length,
+          .image = -p.image};
 }
 
 void add(GrainPair& pair, const ContactPoint& point) {
@@ -70,7 +75,8 @@ ContactNetwork contact_network(std::span<const ContactPoint> points, int grains)
                       .normal_force = 0,
                       .force = {},
                       .normal = {},
-                      .position = {}});
+                      .position = {},
+                      .image = point.image});
     add(list.back(), point);
   }
   for (std::vector<GrainPair>* list : {&network.pairs, &network.walls})

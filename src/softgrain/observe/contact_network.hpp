@@ -14,6 +14,7 @@ struct ContactPoint {
   Vec<2> normal;      ///< unit, from a to b
   Vec<2> position;    ///< [m]
   double length = 0;  ///< share of the outline that touches here [m]
+  Vec<2> image{};     ///< from where b is to where a sees it, across the edge of a periodic cell [m]
 };
 
 /// The number of wall w as a body of a ContactPoint: below every grain's.
@@ -28,6 +29,7 @@ struct GrainPair {
   Vec<2> normal;            ///< unit, from a to b: mean over the points, weighted by their normal force
   Vec<2> position;          ///< mean over the points, weighted alike [m]
   double length = 0;        ///< of the contact, sum over its points [m]
+  Vec<2> image{};           ///< as of the points
 };
 
 /// The points of each pair of bodies taken together, ordered by (a, b); points without normal force (f . n <=

@@ -26,6 +26,7 @@ struct Observation {
   int leg = 0;
   double height = 0, width = 0;            ///< of the box, or the grain's width [m]
   std::vector<double> wall_force;          ///< outwards, by BoxWall, mean since the last row [N/m]
+  std::optional<double> shear;             ///< gamma of a periodic cell
   std::optional<PackingMeasures> packing;  ///< of a closed box
   Energies energies;
   Numbers numbers;  ///< of the model alone

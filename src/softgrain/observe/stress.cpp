@@ -22,7 +22,7 @@ std::vector<double> virial_pressure(std::span<const BranchForce> forces, std::sp
 Mat<2> contact_stress(std::span<const ContactPoint> contacts, std::span<const Vec<2>> centre, double area) {
   Mat<2> sigma;
   for (const ContactPoint& c : contacts)
-    add_outer(sigma, 1 / area, c.force, (c.b < 0 ? c.position : centre[c.b]) - centre[c.a]);
+    add_outer(sigma, 1 / area, c.force, (c.b < 0 ? c.position : centre[c.b] + c.image) - centre[c.a]);
   return sigma;
 }
 

@@ -22,8 +22,9 @@ std::vector<double> virial_pressure(std::span<const BranchForce> forces, std::sp
 
 /// Stress of a packing in a box of the given area [m^2] (Love-Weber, theory (62)), compression positive:
 ///   sigma = (1/V) sum_c f_c (x) l_c  [Pa],
-/// with f_c the force of a on b and l_c from the centre [m] of grain a to that of grain b, or to the point of
-/// contact with a wall. At rest it is the stress on the walls.
+/// with f_c the force of a on b and l_c from the centre [m] of grain a to that of grain b (of its image
+/// across the edge of a periodic cell), or to the point of contact with a wall. At rest it is the stress on
+/// the walls.
 Mat<2> contact_stress(std::span<const ContactPoint> contacts, std::span<const Vec<2>> centre, double area);
 
 /// Stress of the motion [Pa], compression positive: (1/V) sum m (v - v_mean) (x) (v - v_mean), for any bodies

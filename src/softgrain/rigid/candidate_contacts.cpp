@@ -3,71 +3,12 @@
 
 #include "softgrain/contact/coloring.hpp"
 #include "softgrain/core/parallel.hpp"
-#include "softgrain/geometry/cell_grid.hpp"
 #include "softgrain/math/lanes.hpp"
+#include "softgrain/rigid/close_pairs.hpp"
 #include "softgrain/rigid/neighbours.hpp"
 
 namespace softgrain {
 namespace {
-
-struct BodyPair {
-  int a, b;
-  auto operator<=>(const BodyPair&) const = default;
-};
-
-/// Pairs, and those of a later range after them.
-struct PairList {
-  std::vector<BodyPair> pairs;
-  PairList& operator+=(const PairList& more) {
-    pairs.insert(pairs.end(), more.pairs.begin(), more.pairs.end());
-    return *this;
-  }
-};
-
-/// Particles begin .. end - 1 with gap < skin at the reference positions, but not if `skipped(i, j)`.
-template <int Dim, class Skipped>
-std::vector<BodyPair> close_pairs(const RigidParticles<Dim>& particles,
-                                  const std::vector<Vec<Dim>>& reference, double skin,
-                                  const GrainRange& range, const Skipped& skipped) {
-  const auto x = std::span(reference).subspan(range.begin, range.end - range.begin);
-  const double* radius = particles.radius.data() + range.begin;
-  if (x.size() < 2) return {};
-  const CellGrid<Dim> grid(x, 2 * *std::max_element(radius, radius + x.size()) + skin);
-  const auto pairs_of = [&](int i, std::vector<BodyPair>& pairs) {
-    grid.for_each_neighbour(i, [&](int j) {
-      if (j < i || skipped(range.begin + i, range.begin + j)) return;
-      const Vec<Dim> d = x[j] - x[i];
-      const double touch = radius[i] + radius[j] + skin;
-      if (dot(d, d) < touch * touch) pairs.push_back({range.begin + i, range.begin + j});
-    });
-  };
-  return parallel_sum<PairList>(static_cast<int>(x.size()),
-                                [&](int begin, int end) {
-                                  PairList part;
-                                  for (int i = begin; i < end; ++i) pairs_of(i, part.pairs);
-                                  return part;
-                                })
-      .pairs;
-}
-
-/// Pairs of different grains, then of particles and walls.
-template <int Dim>
-std::vector<BodyPair> pairs_between(const RigidParticles<Dim>& particles,
-                                    const NeighbourReference<Dim>& reference) {
-  const auto& grain = particles.grain;
-  std::vector<BodyPair> pairs;
-  if (reference.grains.size() > 1)
-    pairs = close_pairs(particles, reference.between, reference.skin, {0, particles.size()},
-                        [&](int i, int j) { return grain[i] == grain[j]; });
-  for (std::size_t w = 0; w < particles.walls.size(); ++w) {
-    for (int i = 0; i < particles.size(); ++i) {
-      const double height = dot(reference.between[i] - reference.wall_point[w], particles.walls[w].normal);
-      if (height < particles.radius[i] + reference.skin)
-        pairs.push_back({i, particles.wall_body(static_cast<int>(w))});
-    }
-  }
-  return pairs;
-}
 
 /// Contacts of one kind in the order of the sweep.
 struct Sequence {
@@ -105,7 +46,7 @@ Sequence in_fours(const std::vector<BodyPair>& waiting, int n) {
 
 /// A block as it will be swept.
 struct ListedBlock {
-  Sequence frictionless, frictional, pressed;
+  Sequence frictionless, frictional, pressed, crossing;
 };
 
 /// Pairs among the particles of `range`, and walls n, n + 1, ...
@@ -113,10 +54,15 @@ template <int Dim>
 ListedBlock listed(std::vector<BodyPair> pairs, const FrictionRule& rule, const GrainRange& range,
                    const RigidParticles<Dim>& particles) {
   const int n = particles.size();
-  const auto pressed = std::stable_partition(
-      pairs.begin(), pairs.end(), [&](const BodyPair& pair) { return particles.press_share(pair.b) == 0; });
-  Sequence alone{.pairs = {pressed, pairs.end()}};
-  pairs.erase(pressed, pairs.end());
+  const auto take_out = [&](const auto& is_alone) {
+    const auto alone = std::stable_partition(pairs.begin(), pairs.end(),
+                                             [&](const BodyPair& pair) { return !is_alone(pair); });
+    Sequence taken{.pairs = {alone, pairs.end()}};
+    pairs.erase(alone, pairs.end());
+    return taken;
+  };
+  Sequence pressed = take_out([&](const BodyPair& pair) { return particles.press_share(pair.b) != 0; });
+  Sequence crossing = take_out([](const BodyPair& pair) { return pair.crosses(); });
   std::vector<int> a, b, order(pairs.size());
   for (const BodyPair& pair : pairs) a.push_back(pair.a - range.begin), b.push_back(pair.b - range.begin);
   const std::vector<int> color = color_contacts(a, b, range.end - range.begin);
@@ -124,7 +70,7 @@ ListedBlock listed(std::vector<BodyPair> pairs, const FrictionRule& rule, const 
   std::stable_sort(order.begin(), order.end(), [&](int c, int d) { return color[c] < color[d]; });
   std::vector<BodyPair> smooth, rough;
   for (const int c : order) (rule(pairs[c].a, pairs[c].b) > 0 ? rough : smooth).push_back(pairs[c]);
-  return {in_fours(smooth, n), in_fours(rough, n), std::move(alone)};
+  return {in_fours(smooth, n), in_fours(rough, n), std::move(pressed), std::move(crossing)};
 }
 
 /// Rows `batch` of the arrays of pairs and masses.
@@ -132,7 +78,7 @@ template <int Dim>
 void write(const Sequence& sequence, const RigidParticles<Dim>& particles, const FrictionRule& rule,
            const ContactBatch& batch, RigidContacts<Dim>& contacts) {
   for (int c = batch.begin; c < batch.end; ++c) {
-    const auto [a, b] = sequence.pairs[c - batch.begin];
+    const auto& [a, b, image] = sequence.pairs[c - batch.begin];
     const double inverse_a = particles.inverse_mass[a], inverse_b = particles.inverse_mass[b];
     contacts.body_a[c] = a;
     contacts.body_b[c] = b;
@@ -141,6 +87,16 @@ void write(const Sequence& sequence, const RigidParticles<Dim>& particles, const
     contacts.inverse_delassus[c] = 1 / (inverse_a + inverse_b);
     contacts.friction[c] = rule(a, b);
   }
+}
+
+template <int Dim>
+std::vector<typename PeriodicCell<Dim>::Image> images_of(const Sequence& crossing) {
+  std::vector<typename PeriodicCell<Dim>::Image> images;
+  for (const BodyPair& pair : crossing.pairs) {
+    images.emplace_back();
+    std::copy_n(pair.image.begin(), Dim, images.back().begin());
+  }
+  return images;
 }
 
 /// The rows of a list that was not made again, with their impulses.
@@ -160,7 +116,7 @@ void copy(const RigidContacts<Dim>& old, const ContactBlock& from, int to, Rigid
 /// The block of a list whose contacts start at `begin`.
 ContactBlock at(int begin, ContactBlock block) {
   const int shift = begin - block.begin();
-  for (ContactBatch* batch : {&block.frictionless, &block.frictional, &block.pressed})
+  for (ContactBatch* batch : {&block.frictionless, &block.frictional, &block.pressed, &block.crossing})
     batch->begin += shift, batch->fours_end += shift, batch->end += shift;
   return block;
 }
@@ -172,6 +128,7 @@ ContactBlock at(int begin, const ListedBlock& listed) {
   block.frictionless = batch_of(listed.frictionless, begin);
   block.frictional = batch_of(listed.frictional, block.frictionless.end);
   block.pressed = batch_of(listed.pressed, block.frictional.end);
+  block.crossing = batch_of(listed.crossing, block.pressed.end);
   return block;
 }
 
@@ -210,9 +167,7 @@ ListedBlock make_list(const RigidParticles<Dim>& particles, const NeighbourRefer
   if (list == reference.between_list())
     return listed(pairs_between(particles, reference), friction, {0, particles.size()}, particles);
   const GrainRange& grain = reference.grains[list];
-  const auto inside =
-      close_pairs(particles, reference.position, reference.skin, grain, [](int, int) { return false; });
-  return listed(inside, friction, grain, particles);
+  return listed(pairs_inside(particles, reference, grain), friction, grain, particles);
 }
 
 }  // namespace
@@ -244,12 +199,15 @@ RigidContacts<Dim> candidate_contacts(const RigidParticles<Dim>& particles,
     if (block.end() > block.begin() || list == grains) contacts.blocks.push_back(block);
   }
   contacts.resize(size);
+  contacts.cell = particles.cell;
+  contacts.image = is_kept(grains) ? old.image : images_of<Dim>(made[grains].crossing);
   parallel_for(static_cast<int>(contacts.blocks.size()), [&](int k) {
     const ContactBlock& block = contacts.blocks[k];
     if (is_kept(block.list)) return copy(old, *before[block.list], block.begin(), contacts);
     write(made[block.list].frictionless, particles, friction, block.frictionless, contacts);
     write(made[block.list].frictional, particles, friction, block.frictional, contacts);
     write(made[block.list].pressed, particles, friction, block.pressed, contacts);
+    write(made[block.list].crossing, particles, friction, block.crossing, contacts);
     const GrainRange bodies =
         block.list == grains ? GrainRange{0, particles.size()} : reference.grains[block.list];
     const CarriedImpulses<Dim> carried(old, before[block.list] ? *before[block.list] : ContactBlock{},

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "softgrain/geometry/periodic_cell.hpp"
 #include "softgrain/math/vec.hpp"
 
 namespace softgrain {
@@ -16,11 +17,12 @@ struct ContactBatch {
 struct ContactBlock {
   ContactBatch frictionless, frictional;  ///< one after the other
   ContactBatch pressed;                   ///< then those with walls of presses, which take their turns alone
-  int list = 0;                           ///< of NeighbourReference that it was made from
-  int made = 0;                           ///< when, as NeighbourReference::made
+  ContactBatch crossing;  ///< then those with images across the edge of a periodic cell, which do so too
+  int list = 0;           ///< of NeighbourReference that it was made from
+  int made = 0;           ///< when, as NeighbourReference::made
 
   int begin() const { return frictionless.begin; }
-  int end() const { return std::max(frictional.end, pressed.end); }
+  int end() const { return std::max({frictional.end, pressed.end, crossing.end}); }
 };
 
 /// Candidate contacts, in the order of the sweep: all pairs that could touch before the next rebuild. Open
@@ -39,8 +41,20 @@ struct RigidContacts {
   std::vector<double> gap;               ///< (m) [m], open > 0
   std::vector<Vec<Dim>> impulse;         ///< (m) (p_n, p_t) [N s/m in 2D]
   std::vector<ContactBlock> blocks;      ///< those inside grains share no particle; the last is between them
+  PeriodicCell<Dim> cell;                ///< where gaps were measured
+  std::vector<typename PeriodicCell<Dim>::Image> image;  ///< of body b of the last contacts, which cross it
 
   int size() const { return static_cast<int>(body_a.size()); }
+  /// The first contact that crosses the edge of the cell.
+  int first_crossing() const { return size() - static_cast<int>(image.size()); }
+  /// Where body b is seen from a, from where it is itself [m].
+  Vec<Dim> shift(int contact) const {
+    return contact < first_crossing() ? Vec<Dim>{} : cell.shift(image[contact - first_crossing()]);
+  }
+  /// How much faster that image goes than body b [m/s].
+  Vec<Dim> image_velocity(int contact) const {
+    return contact < first_crossing() ? Vec<Dim>{} : cell.velocity(image[contact - first_crossing()]);
+  }
   void resize(int size) {
     body_a.resize(size), body_b.resize(size);
     inverse_mass_a.resize(size), inverse_mass_b.resize(size), inverse_delassus.resize(size);

@@ -95,7 +95,8 @@ Mat<2> NarrowSweeps::System::delassus_block(int contact) const {
 Vec<2> NarrowSweeps::System::relative_velocity(int contact) const {
   const int a = contacts_.body_a[contact], b = contacts_.body_b[contact];
   const Velocity &v_a = sweeps_.velocity_[a], &v_b = sweeps_.velocity_[b];
-  const Vec<2> along{static_cast<double>(v_b.x) - v_a.x, static_cast<double>(v_b.y) - v_a.y};
+  const Vec<2> along = Vec<2>{static_cast<double>(v_b.x) - v_a.x, static_cast<double>(v_b.y) - v_a.y} +
+                       contacts_.image_velocity(contact);
   const Vec<2>& n = contacts_.normal[contact];
   return {dot(n, along) + offset_[contact],
           dot(perpendicular(n), along) - (static_cast<double>(sweeps_.spin_[a]) + sweeps_.spin_[b])};

@@ -33,8 +33,8 @@ class NarrowSweeps {
   /// One sweep. The violation is counted only if `measured`.
   Violation sweep(bool measured);
 
-  /// As a ContactSystem, for the contacts that no block sweeps (ContactBlock::pressed): u under all impulses
-  /// so far, with `offset` as in start, and what an impulse does.
+  /// As a ContactSystem, for the contacts that no block sweeps (ContactBlock::pressed, crossing): u under all
+  /// impulses so far, with `offset` as in start, and what an impulse does.
   class System;
 
   /// The impulses found, (p_n, p_t) [N s/m], of a block of contacts.

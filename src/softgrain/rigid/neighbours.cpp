@@ -7,7 +7,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
-#include "softgrain/geometry/cell_grid.hpp"
+#include "softgrain/geometry/images.hpp"
 #include "softgrain/math/wide.hpp"
 
 namespace softgrain {
@@ -49,8 +49,9 @@ struct Bounds {
 template <int Dim>
 void find_close_grains(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
   const double room = reference.skin + 2 * reference.far;
-  std::vector<Vec<Dim>> centre;
+  std::vector<Vec<Dim>>& centre = reference.centre;
   std::vector<double> radius;
+  centre.clear();
   for (const GrainRange& grain : reference.grains) {
     const Bounds<Dim> bounds(reference, particles, grain);
     centre.push_back(bounds.centre);
@@ -58,15 +59,18 @@ void find_close_grains(NeighbourReference<Dim>& reference, const RigidParticles<
   }
   reference.close.clear();
   if (centre.empty()) return;
-  const CellGrid<Dim> grid(centre, 2 * *std::max_element(radius.begin(), radius.end()) + room);
-  grid.for_each_close_pair([&](int g, int h) {
-    if (norm(centre[h] - centre[g]) < radius[g] + radius[h] + room) reference.close.push_back({g, h});
-  });
+  reference.widest = *std::max_element(radius.begin(), radius.end());
+  const double reach = 2 * reference.widest + room;
+  for_each_close_pair<Dim>(centre, reference.cell, reach,
+                           [&](int g, int h, const Vec<Dim>& d, const auto& image) {
+                             if (norm(d) < radius[g] + radius[h] + room)
+                               reference.close.push_back({g, h, image});
+                           });
   const int grains = static_cast<int>(centre.size());
   for (int w = 0; w < static_cast<int>(particles.walls.size()); ++w)
     for (int g = 0; g < grains; ++g)
       if (dot(centre[g] - reference.wall_point[w], particles.walls[w].normal) < radius[g] + room)
-        reference.close.push_back({g, grains + w});
+        reference.close.push_back({g, grains + w, {}});
 }
 
 /// Displacement of a body since a reference: D of its middle, and d of its particles about it.
@@ -91,6 +95,23 @@ Displacement<Dim> displacement_of(const std::vector<Vec<Dim>>& reference,
   return moved;
 }
 
+/// How far a body has gone, but for what the cell carries it [m]; and half of what the cell brings together
+/// grains that are not close.
+template <int Dim>
+double farthest(const NeighbourReference<Dim>& reference, const PeriodicCell<Dim>& cell,
+                std::vector<Displacement<Dim>> moved) {
+  double most = 0;
+  if (cell.any()) {
+    const Mat<Dim> stretch = stretch_since(reference.cell, cell);
+    for (int g = 0; g < reference.between_list(); ++g) moved[g].middle -= stretch * reference.centre[g];
+    const double together = 2 * (reference.widest + reference.far) + reference.skin;
+    most = 0.5 * together * std::sqrt(contract(stretch, stretch));
+  }
+  double farthest = 0;
+  for (const Displacement<Dim>& of : moved) farthest = std::max(farthest, norm(of.middle) + of.most_about);
+  return most + farthest;
+}
+
 /// How near each list is to missing a pair: above 1 it might.
 template <int Dim>
 std::vector<double> staleness(const NeighbourReference<Dim>& reference,
@@ -106,18 +127,20 @@ std::vector<double> staleness(const NeighbourReference<Dim>& reference,
   for (std::size_t w = 0; w < reference.wall_point.size(); ++w)
     moved[grains + w].middle = particles.walls[w].point - reference.wall_point[w];
   double& between = stale[grains];
-  for (const Displacement<Dim>& of : moved)
-    between = std::max(between, (norm(of.middle) + of.most_about) / reference.far);
-  for (const auto& [g, h] : reference.close) {
+  if (reference.cell.remaps != particles.cell.remaps) between = 2;  // its images have other numbers
+  for (const auto& [g, h, image] : reference.close) {
     const Displacement<Dim>&a = moved[g], &b = moved[h];
-    between = std::max(between, (a.most_about + b.most_about + norm(a.middle - b.middle)) / limit);
+    const Vec<Dim> of_image = particles.cell.shift(image) - reference.cell.shift(image);
+    between = std::max(between, (a.most_about + b.most_about + norm(a.middle - b.middle - of_image)) / limit);
   }
+  between = std::max(between, farthest(reference, particles.cell, moved) / reference.far);
   return stale;
 }
 
 template <int Dim>
 void take_between(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
   reference.between = particles.position;
+  reference.cell = particles.cell;
   reference.wall_point.clear();
   for (const Wall<Dim>& wall : particles.walls) reference.wall_point.push_back(wall.point);
   find_close_grains(reference, particles);
@@ -135,7 +158,7 @@ template <int Dim>
 void detect_contact(const RigidParticles<Dim>& particles, int c, RigidContacts<Dim>& contacts) {
   const int n = particles.size(), a = contacts.body_a[c], b = contacts.body_b[c];
   if (b < n) {
-    const Vec<Dim> d = particles.position[b] - particles.position[a];
+    const Vec<Dim> d = particles.position[b] + contacts.shift(c) - particles.position[a];
     const double r = norm(d);
     contacts.gap[c] = r - (particles.radius[a] + particles.radius[b]);  // g = |x_b - x_a| - (R_a + R_b)
     contacts.normal[c] = (1 / r) * d;
@@ -194,10 +217,11 @@ void set_reference(NeighbourReference<Dim>& reference, const RigidParticles<Dim>
 template <int Dim>
 void restore_reference(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles,
                        std::vector<Vec<Dim>> position, std::vector<Vec<Dim>> between,
-                       std::vector<Vec<Dim>> wall_point) {
+                       std::vector<Vec<Dim>> wall_point, const PeriodicCell<Dim>& cell) {
   reference.position = std::move(position);
   reference.between = std::move(between);
   reference.wall_point = std::move(wall_point);
+  reference.cell = cell;
   start_lists(reference, particles);
   find_close_grains(reference, particles);
 }
@@ -215,7 +239,7 @@ void detect_contacts(const RigidParticles<Dim>& particles, int begin, int end, R
   };
   int c = begin;
   if constexpr (Dim == 2)
-    for (; c + lane_count <= end; c += lane_count) {
+    for (const int last = std::min(end, contacts.first_crossing()); c + lane_count <= last; c += lane_count) {
       if (all_particles(&contacts.body_b[c]))
         detect_four(particles, c, contacts);
       else
@@ -227,11 +251,11 @@ void detect_contacts(const RigidParticles<Dim>& particles, int begin, int end, R
 template bool renew_stale_lists<2>(NeighbourReference<2>&, const RigidParticles<2>&);
 template void set_reference<2>(NeighbourReference<2>&, const RigidParticles<2>&);
 template void restore_reference<2>(NeighbourReference<2>&, const RigidParticles<2>&, std::vector<Vec<2>>,
-                                   std::vector<Vec<2>>, std::vector<Vec<2>>);
+                                   std::vector<Vec<2>>, std::vector<Vec<2>>, const PeriodicCell<2>&);
 template bool renew_stale_lists<3>(NeighbourReference<3>&, const RigidParticles<3>&);
 template void set_reference<3>(NeighbourReference<3>&, const RigidParticles<3>&);
 template void restore_reference<3>(NeighbourReference<3>&, const RigidParticles<3>&, std::vector<Vec<3>>,
-                                   std::vector<Vec<3>>, std::vector<Vec<3>>);
+                                   std::vector<Vec<3>>, std::vector<Vec<3>>, const PeriodicCell<3>&);
 template void detect_contacts<2>(const RigidParticles<2>&, RigidContacts<2>&);
 template void detect_contacts<2>(const RigidParticles<2>&, int, int, RigidContacts<2>&);
 template void detect_contacts<3>(const RigidParticles<3>&, RigidContacts<3>&);

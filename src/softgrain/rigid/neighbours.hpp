@@ -30,9 +30,16 @@ struct NeighbourReference {
   std::vector<int> made{};  ///< (grains + 1) generation of each list, the last is that between grains
   std::vector<GrainRange> grains{};  ///< all particles, grain by grain
 
-  std::vector<std::array<int, 2>> close{};  ///< grains g < h, or g and wall h - grains.size(), that may meet
-                                            ///< before one of them has gone `far`
-  double far = 0;                           ///< [m]
+  /// Grains g < h, in which image, or g and wall h - grains.size(), that may meet before one has gone `far`
+  struct Close {
+    int g = 0, h = 0;
+    typename PeriodicCell<Dim>::Image image{};
+  };
+  PeriodicCell<Dim> cell{};  ///< of the list between grains
+  std::vector<Close> close{};
+  std::vector<Vec<Dim>> centre{};  ///< (grains) of all particles of a grain, in `between` [m]
+  double widest = 0;               ///< half of the largest grain [m]
+  double far = 0;                  ///< [m]
 
   int between_list() const { return static_cast<int>(grains.size()); }
 };
@@ -53,7 +60,7 @@ void set_reference(NeighbourReference<Dim>& reference, const RigidParticles<Dim>
 template <int Dim>
 void restore_reference(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles,
                        std::vector<Vec<Dim>> position, std::vector<Vec<Dim>> between,
-                       std::vector<Vec<Dim>> wall_point);
+                       std::vector<Vec<Dim>> wall_point, const PeriodicCell<Dim>& cell);
 
 /// All candidate contacts with gap < skin at the reference: a block for the inside of each grain that has
 /// any, then the block of those between grains and with walls. Blocks of `old`, made from this reference, are
@@ -64,8 +71,8 @@ RigidContacts<Dim> candidate_contacts(const RigidParticles<Dim>& particles,
                                       const NeighbourReference<Dim>& reference, const FrictionRule& friction,
                                       const RigidContacts<Dim>& old, RigidContacts<Dim> room = {});
 
-/// Gaps and normals at the present positions, in place: of all contacts, or of begin .. end - 1. Those of
-/// coincident centres are not finite.
+/// Gaps and normals at the present positions and in the present cell, in place: of all contacts, or of begin
+/// .. end - 1. Those of coincident centres are not finite.
 template <int Dim>
 void detect_contacts(const RigidParticles<Dim>& particles, RigidContacts<Dim>& contacts);
 template <int Dim>

@@ -37,6 +37,7 @@ void drift(RigidParticles<Dim>& particles, double dt) {
     for (int i = begin; i < end; ++i) particles.position[i] += dt * particles.velocity[i];
   });
   for (Wall<Dim>& wall : particles.walls) wall.point += dt * wall.velocity;
+  particles.cell.advance(dt);
 }
 
 template <int Dim>

@@ -2,6 +2,7 @@
 #include <cassert>
 #include <vector>
 
+#include "softgrain/geometry/periodic_cell.hpp"
 #include "softgrain/geometry/press.hpp"
 #include "softgrain/geometry/wall.hpp"
 #include "softgrain/math/vec.hpp"
@@ -32,6 +33,7 @@ struct RigidParticles {
   double inertia_ratio = Dim == 2 ? 2.0 : 2.5;  ///< kappa = m R^2 / I: 2 for disks, 5/2 for spheres
   std::vector<Wall<Dim>> walls;
   std::vector<Press> presses;  ///< that move some of the walls
+  PeriodicCell<Dim> cell;      ///< that repeats them
 
   int size() const { return static_cast<int>(position.size()); }
   int wall_body(int wall) const { return size() + wall; }
@@ -44,7 +46,7 @@ template <int Dim>
 RigidParticles<Dim> rigid_particles(std::vector<Vec<Dim>> position, std::vector<double> radius,
                                     std::vector<double> mass, std::vector<Wall<Dim>> walls);
 
-/// x += dt v, for particles and walls.
+/// x += dt v, for particles, walls and the cell.
 template <int Dim>
 void drift(RigidParticles<Dim>& particles, double dt);
 

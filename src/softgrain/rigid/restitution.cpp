@@ -65,7 +65,8 @@ void RigidDynamics<Dim>::push_out(double dt) {
   for (int c = 0; c < contacts.size(); ++c) {
     offset_[c] = contacts.gap[c] < 0 ? rate * contacts.gap[c] : inactive_offset;
     if (contacts.gap[c] >= 0) continue;
-    const Vec<Dim> u = particles.velocity[contacts.body_b[c]] - particles.velocity[contacts.body_a[c]];
+    const Vec<Dim> u = particles.velocity[contacts.body_b[c]] - particles.velocity[contacts.body_a[c]] +
+                       contacts.image_velocity(c);
     any = any || dot(contacts.normal[c], u) + offset_[c] < 0;
   }
   if (!any) return;

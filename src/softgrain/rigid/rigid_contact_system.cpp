@@ -47,7 +47,8 @@ void signorini_offset(const RigidContacts<Dim>& contacts, std::span<const Vec<Di
   const double ahead = law.activation == Activation::closed_at_end_of_step ? dt / 2 : 0;
   for (std::size_t k = 0; k < offset.size(); ++k) {
     const int c = begin + static_cast<int>(k);
-    const Vec<Dim> u = velocity_start[contacts.body_b[c]] - velocity_start[contacts.body_a[c]];
+    const Vec<Dim> u =
+        velocity_start[contacts.body_b[c]] - velocity_start[contacts.body_a[c]] + contacts.image_velocity(c);
     const double u_n = dot(contacts.normal[c], u);
     offset[k] = gap[k] + ahead * u_n <= 0 ? law.restitution * u_n : inactive_offset;
   }
@@ -67,7 +68,7 @@ Vec<Dim> relative_velocity(const RigidContacts<Dim>& contacts, int contact,
                            std::span<const Vec<Dim>> velocity, std::span<const Spin<Dim>> spin) {
   const int a = contacts.body_a[contact], b = contacts.body_b[contact];
   const Vec<Dim>& n = contacts.normal[contact];
-  const Vec<Dim> along = velocity[b] - velocity[a];
+  const Vec<Dim> along = velocity[b] - velocity[a] + contacts.image_velocity(contact);
   const Vec<Dim> slip = along - surface_velocity(spin[a] + spin[b], n);
   Vec<Dim> u;
   u[0] = dot(n, along);
@@ -138,7 +139,10 @@ Violation RigidContactSystem<Dim>::sweep(std::span<Vec<Dim>> impulse, std::span<
   Violation violation;
   for (const Violation& of_block : found) violation += of_block;
   if (pushed_) pushed_->sweep<Dim>(*this, impulse, friction, options.relaxation, violation);
-  return violation;
+  LaneViolation<double> crossing;
+  for (int c = contacts_.first_crossing(); c < size(); ++c)
+    relax_contact(c, impulse[c], friction[c], options.relaxation, crossing);
+  return violation += crossing.total(options.relaxation);
 }
 
 template <int Dim>

@@ -36,7 +36,8 @@ template <int Dim>
 void signorini_offset(const RigidContacts<Dim>& contacts, std::span<const Vec<Dim>> velocity_start,
                       const ContactLaw& law, double dt, int begin, std::span<double> offset);
 
-/// u of a contact in its local axes [m/s], from the velocities and spins of the bodies.
+/// u of a contact in its local axes [m/s], from the velocities and spins of the bodies, and of the image that
+/// body b is met through.
 template <int Dim>
 Vec<Dim> relative_velocity(const RigidContacts<Dim>& contacts, int contact,
                            std::span<const Vec<Dim>> velocity, std::span<const Spin<Dim>> spin);

@@ -134,26 +134,6 @@ void RigidDynamics<Dim>::prepare(int begin, int end, double dt) {
       if (offset_[c] == inactive_offset) contacts.impulse[c] = {};
 }
 
-/// Four contacts at once, without branches.
-template <int Dim>
-Overlaps RigidDynamics<Dim>::overlaps_of(const ContactBlock& block) const {
-  const Vec<Dim>* p = contacts.impulse.data();
-  const double* gap = contacts.gap.data();
-  const auto overlap = [&](int c) { return p[c][0] > 0 ? std::max(0.0, -gap[c]) : 0; };
-  Lanes carrying = splat(0), sum = splat(0), deepest = splat(0);
-  int c = block.begin();
-  for (; c + lane_count <= block.end(); c += lane_count) {
-    const auto carries = Lanes{p[c][0], p[c + 1][0], p[c + 2][0], p[c + 3][0]} > 0;
-    const Lanes depth = carries ? max(-load_lanes(gap + c), splat(0)) : splat(0);
-    carrying += carries ? splat(1) : splat(0);
-    sum += depth;
-    deepest = max(deepest, depth);
-  }
-  Overlaps overlaps{static_cast<int>(horizontal_sum(carrying)), horizontal_sum(sum), horizontal_max(deepest)};
-  for (; c < block.end(); ++c) overlaps += {p[c][0] > 0 ? 1 : 0, overlap(c), overlap(c)};
-  return overlaps;
-}
-
 template <int Dim>
 SolverReport RigidDynamics<Dim>::solve(double dt) {
   SolverOptions solver = options.solver;
@@ -162,6 +142,7 @@ SolverReport RigidDynamics<Dim>::solve(double dt) {
   offset_.resize(contacts.size());
   overlaps_.resize(blocks);
   for (const Press& press : particles.presses) set_press_speed(particles, press, press.speed);
+  contacts.cell = particles.cell;
   RigidContactSystem<Dim> system(particles, contacts, offset_);
   if (Dim == 2 && options.precision == Precision::single)
     return solve_in_single_precision(system, solver, dt);
@@ -187,9 +168,14 @@ SolverReport RigidDynamics<Dim>::solve_in_single_precision(RigidContactSystem<Di
     PushedBodies pressed = pressed_walls(dt);
     for (const Pushing& of : pressed.contacts)
       pressed_system.apply_impulse(of.contact, contacts.impulse[of.contact]);
+    for (int c = contacts.first_crossing(); c < contacts.size(); ++c)
+      pressed_system.apply_impulse(c, contacts.impulse[c]);
     const auto sweep = [&](bool measured) {
       Violation violation = narrow_.sweep(measured);
       pressed.sweep<2>(pressed_system, contacts.impulse, contacts.friction, solver.relaxation, violation);
+      for (int c = contacts.first_crossing(); c < contacts.size(); ++c)
+        nlgs_update<2>(pressed_system, c, contacts.impulse[c], contacts.friction[c], solver.relaxation,
+                       violation);
       return violation;
     };
     report = repeat_sweeps(sweep, solver.velocity_scale, solver);
@@ -225,8 +211,22 @@ void RigidDynamics<Dim>::account_work(double dt) {
   add_up_wall_impulses();
   for (std::size_t w = 0; w < particles.walls.size(); ++w)
     work.wall -= dot(wall_impulse_[w], middle(particles.wall_body(static_cast<int>(w))));
+  work.wall += work_of_cell();
   work.contact = sum[1] - work.force - work.wall;
   account_contacts();
+}
+
+/// Images go faster than their bodies by (dH/dt) n: -sum P . (dH/dt) n.
+template <int Dim>
+double RigidDynamics<Dim>::work_of_cell() const {
+  double sum = 0;
+  for (int c = contacts.first_crossing(); c < contacts.size(); ++c) {
+    const Vec<Dim> v = contacts.image_velocity(c);
+    sum -= contacts.impulse[c][0] * dot(contacts.normal[c], v);
+    const auto t = tangents(contacts.normal[c]);
+    for (int k = 1; k < Dim; ++k) sum -= contacts.impulse[c][k] * dot(t[k - 1], v);
+  }
+  return sum;
 }
 
 template <int Dim>
@@ -263,20 +263,6 @@ void RigidDynamics<Dim>::throw_not_finite() const {
     ++first;
   throw NumericalError(
       fmt::format("the velocity of particle {} is not finite; use a smaller time step", first));
-}
-
-template <int Dim>
-StepReport RigidDynamics<Dim>::report(const SolverReport& solver) const {
-  StepReport report{.sweeps = solver.sweeps,
-                    .residual_mean = solver.residual_mean,
-                    .residual_max = solver.residual_max,
-                    .converged = solver.converged};
-  Overlaps overlaps;
-  for (const Overlaps& of_block : overlaps_) overlaps += of_block;
-  report.contacts = overlaps.contacts;
-  if (report.contacts > 0) report.overlap_mean = overlaps.sum / (report.contacts * mean_radius_);
-  report.overlap_max = overlaps.deepest / mean_radius_;
-  return report;
 }
 
 template class RigidDynamics<2>;

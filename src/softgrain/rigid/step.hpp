@@ -30,7 +30,7 @@ struct RigidStepOptions {
 struct StepWork {
   double force = 0;    ///< by the force field
   double contact = 0;  ///< by contact impulses in the frame of the contact: minus the energy dissipated there
-  double wall = 0;     ///< by moving walls
+  double wall = 0;     ///< by moving walls, and by the cell
   double between = 0;  ///< of `contact`: between grains and with walls
   double friction = 0;  ///< of `between`: by sliding
   double push_out = 0;  ///< against the force field, by a way out that adds no velocity
@@ -84,6 +84,7 @@ class RigidDynamics {
   SolverReport solve_in_single_precision(RigidContactSystem<Dim>& system, const SolverOptions& solver,
                                          double dt);
   double friction_work() const;
+  double work_of_cell() const;
   void temper_restitution(double dt);
   void push_out(double dt);
   void account_work(double dt);

@@ -11,6 +11,7 @@ namespace {
 /// Those that the law can answer; `offset` is of all, and then of these.
 RigidContacts<2> active_contacts(const RigidContacts<2>& all, std::vector<double>& offset) {
   RigidContacts<2> active;
+  active.cell = all.cell;
   std::vector<double> kept;
   for (int c = 0; c < all.size(); ++c) {
     if (offset[c] == inactive_offset) continue;
@@ -23,6 +24,7 @@ RigidContacts<2> active_contacts(const RigidContacts<2>& all, std::vector<double
     active.normal.push_back(all.normal[c]);
     active.gap.push_back(all.gap[c]);
     active.impulse.push_back(all.impulse[c]);
+    if (c >= all.first_crossing()) active.image.push_back(all.image[c - all.first_crossing()]);
   }
   offset = std::move(kept);
   return active;

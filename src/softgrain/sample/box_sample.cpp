@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/geometry/cell_grid.hpp"
+#include "softgrain/geometry/images.hpp"
 #include "softgrain/math/random.hpp"
 
 namespace softgrain {
@@ -20,8 +20,18 @@ enum Stream : std::uint32_t { diameters, places, angles };
 /// Shares of the clearance that are tried, one after the other.
 constexpr std::array clearance_shares{1.0, 0.5, 0.25};
 
+/// A periodic cell is at least so many times as wide as its largest grain.
+constexpr double cell_over_grain = 2.5;
+
 /// Diameters are drawn anew up to so often: few grains of some sizes find no places where others do.
 constexpr int most_draws = 60;
+
+PeriodicCell<2> cell_of(const BoxSample& sample) {
+  PeriodicCell<2> cell{.repeats = sample.repeats};
+  if (sample.repeats[0]) cell.edges(0, 0) = sample.width;
+  if (sample.repeats[1]) cell.edges(1, 1) = sample.height;
+  return cell;
+}
 
 /// Pushes grains out of the walls and out of each other once; returns the largest overlap met [m].
 double push_apart(BoxSample& sample, double clearance, double widest) {
@@ -31,23 +41,27 @@ double push_apart(BoxSample& sample, double clearance, double widest) {
   for (PlacedGrain& grain : sample.grains) {
     const double reach = (1 + clearance) * grain.radius;
     for (int k = 0; k < 2; ++k) {
+      if (sample.repeats[k]) continue;
       const double inside = std::clamp(grain.centre[k], reach, size[k] - reach);
       worst = std::max(worst, std::abs(inside - grain.centre[k]));
       grain.centre[k] = inside;
     }
     centres.push_back(grain.centre);
   }
-  CellGrid<2>(centres, 2 * (1 + clearance) * widest).for_each_close_pair([&](int i, int j) {
-    PlacedGrain &a = sample.grains[i], &b = sample.grains[j];
-    const Vec<2> d = b.centre - a.centre;
-    const double distance = norm(d), overlap = (1 + clearance) * (a.radius + b.radius) - distance;
-    if (!(overlap > 0)) return;
-    worst = std::max(worst, overlap);
-    // two in one corner: apart in any direction
-    const Vec<2> push = distance > 0 ? (0.3 * overlap / distance) * d : Vec<2>{0.3 * overlap, 0};
-    a.centre -= push;
-    b.centre += push;
-  });
+  const double reach = 2 * (1 + clearance) * widest;
+  for_each_close_pair<2>(
+      centres, cell_of(sample), reach, [&](int i, int j, const Vec<2>& apart, const auto&) {
+        PlacedGrain &a = sample.grains[i], &b = sample.grains[j];
+        const bool repeats = sample.repeats[0] || sample.repeats[1];  // others have moved on since
+        const Vec<2> d = repeats ? apart : b.centre - a.centre;
+        const double distance = norm(d), overlap = (1 + clearance) * (a.radius + b.radius) - distance;
+        if (!(overlap > 0)) return;
+        worst = std::max(worst, overlap);
+        // two in one corner: apart in any direction
+        const Vec<2> push = distance > 0 ? (0.3 * overlap / distance) * d : Vec<2>{0.3 * overlap, 0};
+        a.centre -= push;
+        b.centre += push;
+      });
   return worst;
 }
 
@@ -66,6 +80,7 @@ BoxSample drawn(const BoxSampleOptions& options, int draw) {
     area += std::numbers::pi * diameter * diameter / 4;
   }
   const double side = std::sqrt(area / options.packing_fraction);
+  sample.repeats = options.repeats;
   sample.width = side * std::sqrt(options.aspect);
   sample.height = side / std::sqrt(options.aspect);
   return sample;
@@ -149,11 +164,27 @@ Box<2> walls_at(double low, double high) {
                  {.point = {0, high}, .normal = {0, -1}, .velocity = {}}});
 }
 
-Box<2> walls_of(const BoxSample& sample) {
-  return Box<2>({{.point = {0, 0}, .normal = {0, 1}, .velocity = {}},
-                 {.point = {0, sample.height}, .normal = {0, -1}, .velocity = {}},
-                 {.point = {0, 0}, .normal = {1, 0}, .velocity = {}},
-                 {.point = {sample.width, 0}, .normal = {-1, 0}, .velocity = {}}});
+Box<2> box_of(const BoxSample& sample) {
+  double widest = 0;
+  for (const PlacedGrain& grain : sample.grains) widest = std::max(widest, 2 * grain.radius);
+  for (int k = 0; k < 2; ++k)
+    require(
+        !sample.repeats[k] || (k == 0 ? sample.width : sample.height) >= cell_over_grain * widest,
+        "box.{}: the periodic cell is {:.3g} m {}, less than {} times the largest grain: it would meet its "
+        "own image; use more grains, or a larger box",
+        k == 0 ? "x" : "y", k == 0 ? sample.width : sample.height, k == 0 ? "wide" : "high", cell_over_grain);
+  require(sample.repeats[0] || !sample.repeats[1],
+          "box.y = \"periodic\" with walls in x: turn the box, so that box.x is \"periodic\"");
+  std::vector<Wall<2>> walls;
+  if (!sample.repeats[1])
+    walls = {{.point = {0, 0}, .normal = {0, 1}, .velocity = {}},
+             {.point = {0, sample.height}, .normal = {0, -1}, .velocity = {}}};
+  if (!sample.repeats[0])
+    walls.insert(walls.end(), {{.point = {0, 0}, .normal = {1, 0}, .velocity = {}},
+                               {.point = {sample.width, 0}, .normal = {-1, 0}, .velocity = {}}});
+  Box<2> box(std::move(walls));
+  box.cell = cell_of(sample);
+  return box;
 }
 
 std::vector<Misplaced> misplaced_grains(const BoxSample& sample) {
@@ -164,17 +195,21 @@ std::vector<Misplaced> misplaced_grains(const BoxSample& sample) {
   for (const PlacedGrain& grain : sample.grains) {
     double outside = 0;
     for (int k = 0; k < 2; ++k)
-      outside = std::max({outside, grain.radius - grain.centre[k], grain.centre[k] + grain.radius - size[k]});
+      if (!sample.repeats[k])
+        outside =
+            std::max({outside, grain.radius - grain.centre[k], grain.centre[k] + grain.radius - size[k]});
     if (outside > largest_placed_overlap * grain.radius)
       faults.push_back({static_cast<int>(centres.size()), -1, outside});
     centres.push_back(grain.centre);
     widest = std::max(widest, grain.radius);
   }
-  CellGrid<2>(centres, 2 * widest).for_each_close_pair([&](int i, int j) {
-    const PlacedGrain &a = sample.grains[i], &b = sample.grains[j];
-    const double depth = a.radius + b.radius - norm(b.centre - a.centre);
-    if (depth > largest_placed_overlap * std::min(a.radius, b.radius)) faults.push_back({j, i, depth});
-  });
+  for_each_close_pair<2>(centres, cell_of(sample), 2 * widest,
+                         [&](int i, int j, const Vec<2>& d, const auto&) {
+                           const PlacedGrain &a = sample.grains[i], &b = sample.grains[j];
+                           const double depth = a.radius + b.radius - norm(d);
+                           if (depth > largest_placed_overlap * std::min(a.radius, b.radius))
+                             faults.push_back({j, i, depth});
+                         });
   std::sort(faults.begin(), faults.end(), [](const Misplaced& a, const Misplaced& b) {
     return std::pair(a.grain, a.other) < std::pair(b.grain, b.other);
   });

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,7 +12,8 @@ namespace softgrain {
 
 /// A box with corner (0, 0).
 struct BoxSample {
-  double width = 0, height = 0;  ///< [m]
+  double width = 0, height = 0;   ///< [m]
+  std::array<bool, 2> repeats{};  ///< along x, y; else there are walls
   std::vector<PlacedGrain> grains;
 };
 
@@ -20,6 +22,7 @@ struct BoxSampleOptions {
   DiameterLaw sizes{};
   double packing_fraction = 0.7;  ///< sum pi R^2 over the box's area
   double aspect = 1;              ///< width over height of the box
+  std::array<bool, 2> repeats{};  ///< along x, y
   double clearance = 0.02;  ///< free distance round each grain, over its radius, where there is room for it
   std::uint64_t seed = 1;
 };
@@ -35,8 +38,9 @@ BoxSample sample_box(const BoxSampleOptions& options);
 /// up to that of the options. O(grains), and less than a second for 300.
 double largest_packing_fraction(const BoxSampleOptions& options);
 
-/// The walls of a box with its corner at (0, 0); those below and above one grain [m].
-Box<2> walls_of(const BoxSample& sample);
+/// A box with its corner at (0, 0), with walls or a cell that repeats; walls below and above one grain [m].
+/// Raises UsageError for a cell that a grain might meet twice, and for one that repeats along y alone.
+Box<2> box_of(const BoxSample& sample);
 Box<2> walls_at(double low, double high);
 
 /// Placed grains may overlap by this share of the smaller radius, and reach that far beyond a wall.

@@ -11,26 +11,34 @@ constexpr int contacts_per_strip = 64;
 
 }  // namespace
 
-void ContactStrips::sort(std::span<const OutlineContact> contacts, std::span<const Vec<2>> position) {
+void ContactStrips::sort(std::span<const OutlineContact> contacts, const OutlineState& outline) {
   const int n = static_cast<int>(contacts.size());
+  const bool ring = outline.cell.repeats[0];  // the last strip is then next to the first
+  const Mat<2> to_share = inverse(outline.cell.edges);
+  const auto along = [&](const Vec<2>& x) { return ring ? (to_share * x)[0] : x[0]; };
   double low = 0, high = 0, reach = 0;  // of a contact's vertices from its slave
   for (int c = 0; c < n; ++c) {
-    const double x = position[contacts[c].vertex][0];
+    const double x = along(outline.position[contacts[c].vertex]), image = ring ? along(contacts[c].image) : 0;
     low = c == 0 ? x : std::min(low, x);
     high = c == 0 ? x : std::max(high, x);
-    contacts[c].for_each_vertex(
-        [&](int vertex, double) { reach = std::max(reach, std::abs(position[vertex][0] - x)); });
+    contacts[c].for_each_vertex([&](int vertex, double) {
+      if (vertex != contacts[c].vertex)
+        reach = std::max(reach, std::abs(along(outline.position[vertex]) + image - x));
+    });
   }
+  if (ring) low = 0, high = 1;
   // vertices of strip s lie in (s width - reach, (s + 1) width + reach)
   const double length = high - low, most = reach > 0 ? length / (2.01 * reach) : n;
   const bool divisible = length > 0 && std::isfinite(length);
   const int wanted = n / contacts_per_strip;
-  const int strips = divisible ? std::max(1, static_cast<int>(std::min<double>(wanted, most))) : 1;
+  int strips = divisible ? std::max(1, static_cast<int>(std::min<double>(wanted, most))) : 1;
+  if (ring && strips > 1) strips -= strips % 2;
   strip_.resize(n);
   begin.assign(strips + 1, 0);
   for (int c = 0; c < n; ++c) {
-    const double along = position[contacts[c].vertex][0] - low;
-    strip_[c] = strips == 1 ? 0 : std::min(strips - 1, static_cast<int>(strips * (along / length)));
+    double share = (along(outline.position[contacts[c].vertex]) - low) / length;
+    if (ring) share -= std::floor(share);
+    strip_[c] = strips == 1 ? 0 : std::min(strips - 1, static_cast<int>(strips * share));
     ++begin[strip_[c] + 1];
   }
   for (int s = 0; s < strips; ++s) begin[s + 1] += begin[s];

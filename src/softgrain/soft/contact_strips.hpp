@@ -6,11 +6,12 @@
 
 namespace softgrain {
 
-/// Contacts in upright strips so wide that contacts of two strips that are not neighbours share no vertex:
-/// all even strips may be worked on at once, then all odd ones, with the same bits on any number of threads.
+/// Contacts in upright strips, or strips along the second lattice vector of a periodic cell, so wide that
+/// contacts of two strips that are not neighbours share no vertex: all even strips may be worked on at once,
+/// then all odd ones, with the same bits on any number of threads.
 struct ContactStrips {
-  /// position: (outline vertices) [m]. Keeps the memory of an earlier call.
-  void sort(std::span<const OutlineContact> contacts, std::span<const Vec<2>> position);
+  /// At the end of the step. Keeps the memory of an earlier call.
+  void sort(std::span<const OutlineContact> contacts, const OutlineState& outline);
 
   int count() const { return static_cast<int>(begin.size()) - 1; }
 

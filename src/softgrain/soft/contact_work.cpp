@@ -33,8 +33,10 @@ void add_contact_work(std::span<const OutlineContact> contacts, std::span<const 
   work.friction += sum.friction;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const int wall = contacts[c].wall;
-    if (wall < 0 || impulse[c][0] == 0) continue;
+    if (impulse[c][0] == 0 || (wall < 0 && !state.cell.any())) continue;
     const Vec<2> P = impulse_vector(contacts[c], impulse[c]);
+    work.walls += dot(P, contacts[c].image_motion) / state.dt;
+    if (wall < 0) continue;
     wall_impulse[wall] -= P;
     work.walls += dot(P, state.walls[wall].velocity);
   }

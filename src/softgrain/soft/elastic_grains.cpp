@@ -149,7 +149,8 @@ SolvedContactProblem ElasticGrains<Dynamics>::caught_problem(double dt) {
 template <class Dynamics>
 void ElasticGrains<Dynamics>::visit(StateVisitor& visit) {
   visit_nodes(dynamics_.grains, visit);
-  visit_contacts(dynamics_.grains, walls_, dynamics_.contacts, dynamics_.impulse, visit);
+  visit_contacts(dynamics_.grains, walls_, dynamics_.box.cell.any(), dynamics_.contacts, dynamics_.impulse,
+                 visit);
   visit({"impulse_time", "s", Owner::run, Role::start, "the sub-step over which impulses acted"},
         dynamics_.impulse_time);
   visit_work(dynamics_.work, visit);

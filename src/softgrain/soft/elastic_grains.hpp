@@ -21,6 +21,7 @@ class ElasticGrains final : public Model {
 
   std::unique_ptr<Model> copy() const override { return std::make_unique<ElasticGrains>(*this); }
   StepReport step(Box<2>& box, double dt) override;
+  void follow(const Mat<2>& L) override { dynamics_.work.walls += add_affine_velocity(dynamics_.grains, L); }
   void visit(StateVisitor& visit) override;
   void begin_row() override { sums_.steps = sums_.iterations = 0; }
 

@@ -95,13 +95,14 @@ void ExplicitDynamics::look_at_cells(double dt) {
 
 void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
   for (const Press& press : box.presses) box.set_speed(press, press.speed);
-  check_wall_motion(box.walls, dt, smallest_radius_);
-  damping_ = {options.damping, dt, box.walls};
+  check_wall_motion(box, dt, smallest_radius_);
+  damping_ = {options.damping, dt, box};
   take_back_spin();
   // contacts where x + dt v will be
   fly_outline(dt);
-  for (Wall<2>& wall : box.walls) wall.point += dt * wall.velocity;
+  box.advance(dt);
   outline_.walls = box.walls;
+  outline_.cell = box.cell;
   outline_.dt = dt;
   std::vector<OutlineContact> found = neighbours_.detect(grains, outline_, contact_margin);
   impulse = carried_impulses(grains, contacts, impulse, found);

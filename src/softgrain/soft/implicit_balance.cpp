@@ -32,6 +32,7 @@ void ImplicitDynamics::balance_momentum(double dt) {
   const double t = step_of_matrix(dt);
   double fastest = 0;
   for (const Wall<2>& wall : box.walls) fastest = std::max(fastest, turn_over_walls * norm(wall.velocity));
+  fastest = std::max(fastest, turn_over_walls * std::sqrt(contract(box.cell.rate, box.cell.rate)));
   std::vector<Wide> given(batches());  // kinetic energy
   parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];

@@ -13,12 +13,14 @@ constexpr double normals_of_fast_steps = 0.65;
 }  // namespace
 
 /// x at which Newton's method starts: x_n + dt v_n (+ dt^2 g in a quasi-static step) for grains in flight,
-/// x_n for others, whose velocity says how far they fell into their last places, not where they go.
+/// x_n for others, whose velocity says how far they fell into their last places, not where they go; a
+/// periodic cell carries these along.
 void ImplicitDynamics::start(double dt) {
   grains.gather_outline(outline_.start);
   for (const Press& press : box.presses) box.set_speed(press, press.speed);
   walls_start_ = box.walls;
-  damping_ = {options.damping, dt, box.walls};
+  cell_start_ = box.cell;
+  damping_ = {options.damping, dt, box};
   contacts_start_ = contacts;
   impulse_start_ = impulse;
   set_flying(dt);
@@ -29,8 +31,9 @@ void ImplicitDynamics::start(double dt) {
     GrainBatch& batch = grains.batches[b];
     start_[b] = batch.position;
     velocity_start_[b] = batch.velocity;
+    const Vec<2, Wide> carried = (1.0 - flying_[b]) * Wide(dt) * velocity_of_cell(b);
     for (std::size_t i = 0; i < batch.position.size(); ++i) {
-      batch.position[i] += flying_[b] * Wide(dt) * flight_velocity(b, i);
+      batch.position[i] += flying_[b] * Wide(dt) * flight_velocity(b, i) + carried;
       if (quasi_static(dt)) batch.position[i] += flying_[b] * fall;
     }
   });
@@ -38,14 +41,16 @@ void ImplicitDynamics::start(double dt) {
   outline_.normals_at = quasi_static(dt) ? 1 : normals_of_fast_steps;
   if (impulse_time <= 0) find_first_contacts();
   hold_spins(dt);
-  for (Wall<2>& wall : box.walls) wall.point += dt * wall.velocity;
+  box.advance(dt);
   outline_.walls = box.walls;
+  outline_.cell = box.cell;
 }
 
 /// No step has found contacts yet, and hold_spins asks who is near whom.
 void ImplicitDynamics::find_first_contacts() {
   outline_.position = outline_.start;
   outline_.walls = box.walls;
+  outline_.cell = box.cell;
   contacts = neighbours_.detect(grains, outline_);
   impulse.assign(contacts.size(), {});
 }
@@ -63,6 +68,12 @@ void ImplicitDynamics::hold_touching() {
       if (touching[grains.batches[b].grain[lane]]) flying_[b].set(lane, 0);
 }
 
+/// L x_c, x_c the centres of mass of the grains of a batch: at which a periodic cell carries them.
+Vec<2, Wide> ImplicitDynamics::velocity_of_cell(std::size_t b) const {
+  if (!box.cell.any()) return {};
+  return affine_velocity(grains, grains.batches[b], box.cell.gradient());
+}
+
 /// All grains (lanes without one stay where they are), but in a step whose inertia A does not have those that
 /// carry contacts or would fly further than is trusted.
 void ImplicitDynamics::set_flying(double dt) {
@@ -75,7 +86,9 @@ void ImplicitDynamics::set_flying(double dt) {
   for (int b = 0; b < batches(); ++b) {
     const GrainBatch& batch = grains.batches[b];
     Wide fastest = 0.0;
-    for (const Vec<2, Wide>& v : batch.velocity) {
+    const Vec<2, Wide> of_cell = velocity_of_cell(b);
+    for (const Vec<2, Wide>& of_node : batch.velocity) {
+      const Vec<2, Wide> v = of_node - of_cell;
       const Wide square = dot(v, v);
       fastest = select(square <= fastest, fastest, square);
     }
@@ -90,6 +103,7 @@ void ImplicitDynamics::take_back() {
     grains.batches[b].velocity = velocity_start_[b];
   }
   box.walls = walls_start_;
+  box.cell = cell_start_;
   contacts = contacts_start_;
   impulse = impulse_start_;
 }

@@ -121,6 +121,7 @@ class ImplicitDynamics {
   int most_iterations(double dt) const;
   void start(double dt);
   void set_flying(double dt);
+  Vec<2, Wide> velocity_of_cell(std::size_t b) const;
   void hold_touching();
   void find_first_contacts();
   void hold_spins(double dt);
@@ -171,6 +172,7 @@ class ImplicitDynamics {
   std::vector<Vec<2>> outline_increment_;
   OutlineState outline_;
   std::vector<Wall<2>> walls_start_;
+  PeriodicCell<2> cell_start_;
   double press_moved_ = 0;  // of a wall by the present iteration [m]
   std::vector<OutlineContact> contacts_start_, found_;
   std::vector<Vec<2>> impulse_start_;

@@ -40,7 +40,7 @@ LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, const O
                                std::span<Vec<2>> velocity, std::span<const double> inverse_mass,
                                Scratch& scratch)
     : rows_(scratch.rows), strips_(scratch.strips), velocity_(velocity) {
-  strips_.sort(contacts, outline.position);
+  strips_.sort(contacts, outline);
   rows_.resize(contacts.size());
   for_each_strip([&](int strip) {
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
@@ -70,8 +70,9 @@ LumpedContacts::Row LumpedContacts::row_of(const OutlineContact& contact, const 
   });
   row.vertices = static_cast<int>(count);
   row.normal = contact.normal;
-  if (contact.wall >= 0) {
-    const Vec<2>& v = outline.walls[contact.wall].velocity;
+  if (contact.wall >= 0 || outline.cell.any()) {
+    const Vec<2> v =
+        contact.wall >= 0 ? outline.walls[contact.wall].velocity : (1 / outline.dt) * contact.image_motion;
     row.offset = {-dot(contact.normal, v), -dot(perpendicular(contact.normal), v)};
   }
   row.inverse_delassus = 1 / row.delassus;

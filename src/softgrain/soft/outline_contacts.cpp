@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/cell_grid.hpp"
+#include "softgrain/geometry/images.hpp"
 #include "softgrain/soft/span_curve.hpp"
 
 namespace softgrain {
@@ -17,6 +19,10 @@ namespace {
 // skin.
 constexpr double largest_margin = 0.5;
 constexpr double skin_share = 0.5;
+
+/// Stretch of a periodic cell after which candidates are found anew: it brings vertices together that are
+/// within reach of each other by a fifth of the skin.
+constexpr double most_stretch = 0.01;
 
 /// Vertices that a thread takes at once.
 constexpr int part_size = 128;
@@ -66,9 +72,9 @@ bool surely_outside(std::span<const Vec<2>> position, const Ring& ring, int star
   return beyond > 0 && beyond * beyond > least * least * dot(chord, chord);
 }
 
-/// The place that a slave faces on the curve from the vertex `start` to the next.
-OutlineContact curve_contact(std::span<const Vec<2>> position, const Ring& ring, int slave, int start) {
-  const Vec<2>& x = position[slave];
+/// The place that a slave at x faces on the curve from the vertex `start` to the next.
+OutlineContact curve_contact(std::span<const Vec<2>> position, const Ring& ring, int slave, const Vec<2>& x,
+                             int start) {
   const int end = ring.next(start);
   OutlineContact contact{.vertex = slave, .master = {ring.previous(start), start, end, ring.next(end)}};
   const SpanCurve curve(position, contact.master);
@@ -116,21 +122,23 @@ int nearest_vertex(const Ring& ring, std::span<const Vec<2>> position, const Vec
   }
 }
 
-/// Where the slave v faces a master at the outlines `position`, near the vertex `nearest`.
-OutlineContact facing_contact(std::span<const Vec<2>> position, const Ring& ring, int v, int nearest) {
-  const Vec<2>& x = position[v];
+/// Where the slave v at x faces a master at the outlines `position`, near the vertex `nearest`.
+OutlineContact facing_contact(std::span<const Vec<2>> position, const Ring& ring, int v, const Vec<2>& x,
+                              int nearest) {
   nearest = nearest_vertex(ring, position, x, nearest);
-  return curve_contact(position, ring, v, facing_segment(ring, position, x, nearest));
+  return curve_contact(position, ring, v, x, facing_segment(ring, position, x, nearest));
 }
 
 /// The vertex of each grain within `reach` of vertex v that is nearest to it, sorted by grain.
-void find_near(const SoftGrains& grains, std::span<const Vec<2>> position, const CellGrid<2>& grid,
-               double reach, int v, std::vector<Nearest>& near) {
+/// `vertex` says whose image each position is; it is empty if there are none.
+void find_near(const SoftGrains& grains, std::span<const Vec<2>> position, std::span<const int> vertex,
+               const CellGrid<2>& grid, double reach, int v, std::vector<Nearest>& near) {
   near.clear();
-  grid.for_each_neighbour(v, [&](int w) {
+  grid.for_each_neighbour(v, [&](int at) {
+    const int w = vertex.empty() ? at : vertex[at];
     const int other = grains.grain_of_vertex(w);
     if (other == grains.grain_of_vertex(v)) return;
-    const Vec<2> d = position[w] - position[v];
+    const Vec<2> d = position[at] - position[v];
     const double distance_squared = dot(d, d);
     if (distance_squared > reach * reach) return;
     const auto found =
@@ -152,11 +160,15 @@ std::array<double, 4> curve_weights(double xi) {
 
 bool OutlineNeighbours::moved_far(const OutlineState& state) {
   if (reference_.size() != state.position.size()) return true;
-  const double allowed = skin_share * segment_ / 2;
+  const bool repeats = state.cell.any();
+  const Mat<2> stretch = stretch_since(reference_cell_, state.cell);
+  if (std::sqrt(contract(stretch, stretch)) > most_stretch) return true;
+  const double allowed = (repeats ? 1 - most_stretch / 0.05 : 1) * skin_share * segment_ / 2;
   parallel_for(static_cast<int>(parts_.size()), [&](int k) {
     double largest = 0;
     for (int v = parts_[k].begin; v < parts_[k].end; ++v) {
-      const Vec<2> d = state.position[v] - reference_[v];
+      Vec<2> d = state.position[v] - reference_[v];
+      if (repeats) d -= stretch * reference_[v];  // what the cell carries it
       largest = std::max(largest, dot(d, d));
     }
     parts_[k].moved_far = largest > allowed * allowed;
@@ -166,6 +178,7 @@ bool OutlineNeighbours::moved_far(const OutlineState& state) {
 
 void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineState& state) {
   reference_ = state.position;
+  reference_cell_ = state.cell;
   parts_.resize((grains.outline_size() + part_size - 1) / part_size);
   segment_ = 0;
   for (int g = 0; g < grains.size(); ++g) segment_ += segment_length(grains, g) / grains.size();
@@ -173,7 +186,11 @@ void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineS
   for (int v = 0; v < grains.outline_size(); ++v)
     longest = std::max(longest, norm(state.position[ring_of(grains, v).next(v)] - state.position[v]));
   const double reach = longest + (largest_margin + skin_share) * segment_;
-  const CellGrid<2> grid(state.position, reach);
+  std::optional<Images<2>> images;
+  if (state.cell.any()) images.emplace(state.position, state.cell, reach);
+  const std::span<const Vec<2>> position = images ? images->position : state.position;
+  const std::span<const int> vertex = images ? std::span<const int>(images->point) : std::span<const int>();
+  const CellGrid<2> grid(position, reach);
   parallel_for(static_cast<int>(parts_.size()), [&](int k) {
     Part& part = parts_[k];
     part.begin = k * part_size;
@@ -181,7 +198,7 @@ void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineS
     part.candidates.clear();
     std::vector<Nearest> near;
     for (int v = part.begin; v < part.end; ++v) {
-      find_near(grains, state.position, grid, reach, v, near);
+      find_near(grains, position, vertex, grid, reach, v, near);
       for (const Nearest& nearest : near) part.candidates.push_back({v, nearest.vertex});
     }
   });
@@ -205,15 +222,21 @@ void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineSta
     }
     for (; candidate != part.candidates.end() && candidate->vertex == v; ++candidate) {
       const Ring ring = ring_of(grains, candidate->nearest);
-      candidate->nearest = nearest_vertex(ring, state.position, x, candidate->nearest);
-      const Vec<2> d = x - state.position[candidate->nearest];
+      const auto image = state.cell.nearest(state.position[candidate->nearest] - x);
+      const Vec<2> shift = state.cell.shift(image), motion = state.dt * state.cell.velocity(image);
+      const Vec<2> seen = x - shift;  // from the master
+      candidate->nearest = nearest_vertex(ring, state.position, seen, candidate->nearest);
+      const Vec<2> d = seen - state.position[candidate->nearest];
       if (dot(d, d) > 9 * segment_ * segment_) continue;
-      const int start = facing_segment(ring, state.position, x, candidate->nearest);
-      if (surely_outside(state.position, ring, start, x, margin)) continue;
-      const double gap = curve_contact(state.position, ring, v, start).gap;
+      const int start = facing_segment(ring, state.position, seen, candidate->nearest);
+      if (surely_outside(state.position, ring, start, seen, margin)) continue;
+      const double gap = curve_contact(state.position, ring, v, seen, start).gap;
       if (gap >= margin) continue;
-      OutlineContact contact = facing_contact(on_the_way_, ring, v, candidate->nearest);
+      const Vec<2> seen_on_the_way = on_the_way_[v] - shift + (1 - state.normals_at) * motion;
+      OutlineContact contact = facing_contact(on_the_way_, ring, v, seen_on_the_way, candidate->nearest);
       contact.gap = gap;
+      contact.image = shift;
+      contact.image_motion = motion;
       contact.slip = dot(perpendicular(contact.normal), relative_displacement(contact, state));
       part.contacts.push_back(contact);
     }
@@ -245,7 +268,7 @@ Vec<2> relative_displacement(const OutlineContact& contact, const OutlineState& 
   contact.for_each_vertex([&](int vertex, double weight) {
     displacement += weight * (state.position[vertex] - state.start[vertex]);
   });
-  return displacement;
+  return displacement -= contact.image_motion;
 }
 
 double gap_now(const OutlineContact& contact, const OutlineState& state) {
@@ -254,7 +277,7 @@ double gap_now(const OutlineContact& contact, const OutlineState& state) {
     contact.for_each_vertex([&](int vertex, double weight) { apart += weight * state.position[vertex]; });
     return dot(apart, contact.normal) + contact.rise;
   }
-  const Vec<2>& x = state.position[contact.vertex];
+  const Vec<2> x = state.position[contact.vertex] - contact.image;
   const SpanCurve curve(state.position, contact.master);
   const double xi = curve.closest_to(x);
   const Vec<2> t = curve.tangent(xi);

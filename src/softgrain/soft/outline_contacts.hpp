@@ -2,6 +2,7 @@
 #include <span>
 #include <vector>
 
+#include "softgrain/geometry/periodic_cell.hpp"
 #include "softgrain/geometry/wall.hpp"
 #include "softgrain/math/vec.hpp"
 #include "softgrain/soft/soft_grains.hpp"
@@ -31,6 +32,8 @@ struct OutlineContact {
   Vec<2> normal{};   ///< unit, from the master to the slave: the gradient of the gap, at normals_at
   double gap = 0;    ///< g = (x_slave - c) . n [m], open > 0
   double slip = 0;   ///< tangential displacement of slave against master since the start of the step [m]
+  Vec<2> image{};    ///< from where the master is to where the slave sees it, at the end of the step [m]
+  Vec<2> image_motion{};  ///< of that image against the master over the step [m]
 
   /// Weights of the master's vertices, if there is one.
   std::array<double, 4> weights() const { return curve_weights(share); }
@@ -57,6 +60,7 @@ struct OutlineState {
   /// Share of the step at which pairs take place and normal: half-way contact gives no energy; 1 where the
   /// step is quasi-static and its end must be an equilibrium (docs/decisions/0026).
   double normals_at = 0.5;
+  PeriodicCell<2> cell{};  ///< at the end of the step
 };
 
 /// Finds the contacts of outlines: which grains a vertex may meet is looked up among cells, and kept until
@@ -85,8 +89,9 @@ class OutlineNeighbours {
   void find_candidates(const SoftGrains& grains, const OutlineState& state);
   void find_contacts(const SoftGrains& grains, const OutlineState& state, double margin, Part& part) const;
 
-  std::vector<Part> parts_;         // all vertices, in order
-  std::vector<Vec<2>> reference_;   // positions when the candidates were found
+  std::vector<Part> parts_;        // all vertices, in order
+  std::vector<Vec<2>> reference_;  // positions when the candidates were found
+  PeriodicCell<2> reference_cell_;
   std::vector<Vec<2>> on_the_way_;  // where normals are taken [m]
   double segment_ = 0;              // mean length of a segment of the round grains [m]
 };

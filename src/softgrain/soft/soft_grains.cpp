@@ -122,4 +122,29 @@ int SoftGrains::runaway_grain(double dt) const {
   return -1;
 }
 
+Vec<2, Wide> affine_velocity(const SoftGrains& grains, const GrainBatch& batch, const Mat<2>& L) {
+  Wide mass = 0.0;
+  Vec<2, Wide> x{};
+  for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
+    const Wide m = grains.node_mass(batch, i);
+    mass += m;
+    x += m * batch.position[i];
+  }
+  x = (1.0 / mass) * x;
+  Vec<2, Wide> v{L(0, 0) * x[0] + L(0, 1) * x[1], L(1, 0) * x[0] + L(1, 1) * x[1]};
+  for (int lane = 0; lane < Wide::size; ++lane)
+    if (batch.grain[lane] < 0)
+      for (int d = 0; d < 2; ++d) v[d].set(lane, 0);
+  return v;
+}
+
+double add_affine_velocity(SoftGrains& grains, const Mat<2>& L) {
+  const double before = grains.kinetic_energy();
+  for (GrainBatch& batch : grains.batches) {
+    const Vec<2, Wide> more = affine_velocity(grains, batch, L);
+    for (Vec<2, Wide>& v : batch.velocity) v += more;
+  }
+  return grains.kinetic_energy() - before;
+}
+
 }  // namespace softgrain

@@ -106,4 +106,10 @@ class SoftGrains {
   std::vector<int> outline_begin_, grain_of_vertex_;
 };
 
+/// L x_c of each grain of a batch, x_c its centre of mass [m/s]; 0 in lanes without a grain.
+Vec<2, Wide> affine_velocity(const SoftGrains& grains, const GrainBatch& batch, const Mat<2>& L);
+
+/// Each grain as a whole gets the velocity L x_c more. Returns by how much the kinetic energy grew [J/m].
+double add_affine_velocity(SoftGrains& grains, const Mat<2>& L);
+
 }  // namespace softgrain

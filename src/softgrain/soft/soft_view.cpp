@@ -36,7 +36,8 @@ std::vector<ContactPoint> contact_points(const SoftView& view) {
                       .force = (-1 / view.impulse_time) * impulse_vector(contact, view.impulse[c]),
                       .normal = -contact.normal,
                       .position = place,
-                      .length = (wall ? 0.5 : 0.25) * (norm(x[v] - before) + norm(x[v] - after))});
+                      .length = (wall ? 0.5 : 0.25) * (norm(x[v] - before) + norm(x[v] - after)),
+                      .image = contact.image});
   }
   return points;
 }
@@ -61,6 +62,7 @@ Bodies nodes_of(const SoftGrains& grains) {
     for (int i = 0; i < grains.topology(g).grid.nodes(); ++i) {
       nodes.mass.push_back(grains.node_mass(*batch, i)[lane]);
       nodes.velocity.push_back({batch->velocity[i][0][lane], batch->velocity[i][1][lane]});
+      nodes.grain.push_back(g);
     }
   }
   return nodes;
@@ -192,23 +194,29 @@ void check_bodies(std::span<const std::int64_t> bodies, int vertices, int walls)
 
 }  // namespace
 
-void visit_contacts(const SoftGrains& grains, int walls, std::vector<OutlineContact>& contacts,
+void visit_contacts(const SoftGrains& grains, int walls, bool repeats, std::vector<OutlineContact>& contacts,
                     std::vector<Vec<2>>& impulse, StateVisitor& visit) {
   std::vector<std::int64_t> bodies;
   std::vector<Vec<5>> places;
+  std::vector<Vec<2>> images;
   for (const OutlineContact& c : contacts) {
     bodies.insert(bodies.end(), {c.vertex, c.wall});
     bodies.insert(bodies.end(), c.master.begin(), c.master.end());
     places.push_back({c.share, c.normal[0], c.normal[1], c.gap, c.slip});
+    if (repeats) images.push_back(c.image);
   }
   visit.list({"contact_bodies", "", Owner::contact, Role::start, "vertex, wall or -1, four master vertices"},
              bodies, bodies_of_contact);
   visit.list({"contact_places", "", Owner::contact, Role::start, "share, normal (2), gap [m], slip [m]"},
              places);
+  if (repeats)
+    visit.list({"contact_image", "m", Owner::contact, Role::start, "from the master to where it is met"},
+               images);
   visit.list({"contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t)"}, impulse);
   if (!visit.reads()) return;
   check_bodies(bodies, grains.outline_size(), walls);
-  if (places.size() != impulse.size() || bodies.size() != bodies_of_contact * places.size())
+  if (places.size() != impulse.size() || (repeats && images.size() != impulse.size()) ||
+      bodies.size() != bodies_of_contact * places.size())
     throw IoError("the snapshot's arrays of contacts have different lengths");
   contacts.clear();
   for (std::size_t c = 0; c < places.size(); ++c) {
@@ -219,7 +227,8 @@ void visit_contacts(const SoftGrains& grains, int walls, std::vector<OutlineCont
                         .share = places[c][0],
                         .normal = {places[c][1], places[c][2]},
                         .gap = places[c][3],
-                        .slip = places[c][4]});
+                        .slip = places[c][4],
+                        .image = repeats ? images[c] : Vec<2>{}});
   }
 }
 

@@ -44,8 +44,9 @@ std::vector<GrainView> grain_views(const SoftGrains& grains);
 /// Declares positions and velocities of all nodes, and the history of the points, eight grains to a row.
 void visit_nodes(SoftGrains& grains, StateVisitor& visit);
 
-/// Declares the contacts and their impulses. Raises IoError for vertices and walls that are not there.
-void visit_contacts(const SoftGrains& grains, int walls, std::vector<OutlineContact>& contacts,
+/// Declares the contacts and their impulses; with their images if a cell repeats. Raises IoError for vertices
+/// and walls that are not there.
+void visit_contacts(const SoftGrains& grains, int walls, bool repeats, std::vector<OutlineContact>& contacts,
                     std::vector<Vec<2>>& impulse, StateVisitor& visit);
 
 }  // namespace softgrain

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
 #include <string_view>
@@ -87,5 +88,13 @@ class StateVisitor {
     for (std::size_t i = 0; i < values.size(); ++i) rows[i / N][static_cast<int>(i % N)] = values[i];
   }
 };
+
+/// A matrix, row by row.
+template <int N>
+void visit_matrix(StateVisitor& visit, const Field& field, Mat<N>& matrix) {
+  std::vector<double> entries(matrix.c.begin(), matrix.c.end());
+  visit(field, entries);
+  std::copy(entries.begin(), entries.end(), matrix.c.begin());
+}
 
 }  // namespace softgrain

@@ -89,7 +89,7 @@ TEST_CASE("grains of primaries stand in their places without overlap, each with 
   for (int i = 0; i < p.size(); ++i) {
     mass[p.grain[i]] += p.mass[i];
     centre[p.grain[i]] += p.mass[i] * p.position[i];
-    for (const Wall<2>& wall : walls_of(box).walls)
+    for (const Wall<2>& wall : box_of(box).walls)
       CHECK(dot(p.position[i] - wall.point, wall.normal) > 0.998 * p.radius[i]);
     for (int j = 0; j < i; ++j)
       if (p.grain[i] != p.grain[j])

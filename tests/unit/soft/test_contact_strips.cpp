@@ -66,7 +66,7 @@ struct Reordered {
 TEST_CASE("strips hold every contact once, and only neighbouring strips share vertices") {
   const Packing packing;
   ContactStrips strips;
-  strips.sort(packing.contacts, packing.outline.position);
+  strips.sort(packing.contacts, packing.outline);
   REQUIRE(strips.count() >= 4);
   CHECK(strips.count() < static_cast<int>(packing.contacts.size()) / 64);  // no narrower than contacts reach
   std::vector<int> sorted = strips.order;
@@ -89,11 +89,11 @@ TEST_CASE("strips hold every contact once, and only neighbouring strips share ve
 TEST_CASE("no contact, or contacts of one place, make one strip") {
   const Packing packing;
   ContactStrips strips;
-  strips.sort({}, packing.outline.position);
+  strips.sort({}, packing.outline);
   CHECK(strips.count() == 1);
   CHECK(strips.order.empty());
   const std::vector<OutlineContact> same(1000, {.vertex = 7, .wall = 0});
-  strips.sort(same, packing.outline.position);
+  strips.sort(same, packing.outline);
   CHECK(strips.begin.back() == 1000);
 }
 

@@ -55,9 +55,6 @@ std::vector<FormKey> all_forms() {
       stands_for("pair.friction", {"contact.friction", "contact.wall_friction"}, "coefficient of friction mu between the two: of grains, or of a grain and a wall"),
       only("pair.surface_energy", "0", "adhesion between the two"),
 
-      word("box.x", {"walls"}, {"periodic", "open"}, "what ends the box in x"),
-      word("box.y", {"walls"}, {"periodic", "open"}, "what ends the box in y"),
-
       {"sample.file", Takes::text, {}, "a CSV file with the places of the grains, instead of random ones: see below; from the folder of the case file"},
 
       {"stage.name", Takes::text, {}, "name of the stage"},
@@ -66,6 +63,7 @@ std::vector<FormKey> all_forms() {
       number("stage.until.time", "ms", positive, "time since the stage began"),
       number("stage.until.strain", "", any, "compressive strain of yy since the start of the run, as the column strain has it"),
       number("stage.until.strain_xx", "", any, "the same of xx, ln(w_start/w)"),
+      number("stage.until.strain_xy", "", any, "shear strain gamma of a periodic cell since the start of the run"),
       number("stage.until.packing_fraction", "", positive, "packing fraction Phi_0 of the undeformed grains"),
       number("stage.until.overlap", "", positive, "mean overlap of the contacts, as the column overlap_mean has it"),
       number("stage.until.rest", "", positive, "kinetic over stored energy, below which the grains are at rest"),
@@ -89,6 +87,22 @@ void add_forms_of(Part part, std::string_view walls, std::vector<FormKey>& all) 
 }
 // clang-format on
 
+/// The same of the shear of a periodic cell.
+// clang-format off
+void add_shear(std::vector<FormKey>& all) {
+  const Range any, positive{.low = 0, .without_low = true};
+  all.push_back(word("stage.xy", {"rest"}, {}, "shear of a cell that is periodic in x and y; \"rest\" where nothing is said of it"));
+  all.push_back(number("stage.xy.rate", "1/s", any, "of the shear strain; above 0 what lies higher goes to +x"));
+  all.push_back(number("stage.xy.stress", "MPa", any, "shear stress that the cell keeps, -stress_xy of the columns: it has the sign of the shear that it brings about"));
+  all.push_back(number("stage.xy.speed", "m/s", positive, "of the upper end against the lower one, at most; left out: loading.wall_velocity"));
+  all.push_back(number("stage.xy.stress_amplitude", "MPa", positive, "of the wave that is added to the stress"));
+  all.push_back(number("stage.xy.strain_amplitude", "", positive, "of the wave of the shear strain about that where the stage began"));
+  all.push_back(number("stage.xy.period", "ms", positive, "of the wave"));
+  all.push_back(word("stage.xy.wave", {"sine", "triangle"}, {}, "form of the wave; left out: sine"));
+  all.push_back(number("stage.until.stress_xy", "MPa", any, "the same stress, mean over 0.1 % of strain"));
+}
+// clang-format on
+
 void add_stages(std::vector<FormKey>& all) {
   add_forms_of(Part::yy, "bottom and top wall; \"rest\" where nothing is said of them", all);
   add_forms_of(Part::xx, "left and right wall, in the same way", all);
@@ -96,6 +110,7 @@ void add_stages(std::vector<FormKey>& all) {
   add_forms_of(Part::top, "the top wall alone", all);
   add_forms_of(Part::left, "the left wall alone", all);
   add_forms_of(Part::right, "the right wall alone", all);
+  add_shear(all);
 }
 
 }  // namespace

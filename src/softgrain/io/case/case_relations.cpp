@@ -154,11 +154,25 @@ std::string path_incomplete(const Case& c) {
     return fmt::format("experiment.loading \"{}\" needs loading.{} > 0: {}", word_of(c.experiment.loading),
                        key, what);
   };
-  if (scope::biaxial.covers(c) && c.loading.confining_stress == 0)
-    return needs("confining_stress", "the stress that the side walls keep");
+  if (scope::confining.covers(c) && c.loading.confining_stress == 0)
+    return needs("confining_stress", "the stress that is kept");
+  if (scope::shearing.covers(c) && c.loading.shear_rate == 0)
+    return needs("shear_rate", "how fast the cell shears");
   if (scope::is_path(c, LoadingPath::die) && c.loading.max_stress == 0)
     return needs("max_stress", "the stress to which the top wall presses");
   if (scope::relaxing.covers(c) && c.loading.hold == 0) return needs("hold", "how long the walls rest");
+  return "";
+}
+
+/// What a path asks of walls or of a cell that the box does not have.
+std::string box_unfit(const Case& c) {
+  const auto repeats = repeats_of(c);
+  if (repeats[1] && !repeats[0])
+    return "box.y \"periodic\" with walls in x: turn the box, so that box.x is \"periodic\"";
+  if (scope::shearing.covers(c) && !repeats[1])
+    return "experiment.loading \"shear\" shears a cell: it needs box.x and box.y \"periodic\"";
+  if (scope::is_path(c, LoadingPath::die) && (repeats[0] || repeats[1]))
+    return "experiment.loading \"die\" needs walls: leave out box.x and box.y \"periodic\"";
   return "";
 }
 
@@ -220,8 +234,10 @@ const std::vector<Relation>& case_relations() {
       {{"loading.max_packing_fraction", "sample.packing_fraction"}, too_dense_from_the_start},
       {{"loading.hold_stress", "loading.hold", "experiment.loading"}, cannot_hold_a_stress},
       {{"experiment.loading"}, stages_and_path_differ},
-      {{"experiment.loading", "loading.confining_stress", "loading.max_stress", "loading.hold"},
+      {{"experiment.loading", "loading.confining_stress", "loading.max_stress", "loading.hold",
+        "loading.shear_rate"},
        path_incomplete},
+      {{"experiment.loading", "box.x", "box.y"}, box_unfit},
   };
   return relations;
 }

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array parts{Part::yy, Part::xx, Part::bottom, Part::top, Part::left, Part::right};
+constexpr std::array parts{Part::yy, Part::xx, Part::bottom, Part::top, Part::left, Part::right, Part::xy};
 
 /// What a part may do, in the words of a file.
 struct Manner {
@@ -85,7 +85,7 @@ std::string stress_word(std::size_t part) {
 Until until_of(const StageText& text) {
   const auto number = [&](const std::string& name) { return text.number("stage.until." + name); };
   Until until{.time = number("time")};
-  until.strain = {number("strain"), number("strain_xx")};
+  until.strain = {number("strain"), number("strain_xx"), number("strain_xy")};
   for (std::size_t p = 0; p < parts_with_stress; ++p) until.stress[p] = number(stress_word(p));
   until.packing_fraction = number("packing_fraction");
   until.overlap = number("overlap");
@@ -119,12 +119,33 @@ bool fits_one_grain(const Stage& stage) {
       return false;
   for (const auto& stress : until.stress)
     if (stress) return false;
-  return !until.strain[1] && !until.packing_fraction;
+  return !until.strain[1] && !until.strain[2] && !until.packing_fraction;
+}
+
+/// What a stage asks of walls or of a cell that the box does not have; "" if nothing.
+std::string missing_in(const Case& c, const Stage& stage) {
+  const auto repeats = repeats_of(c);
+  const auto is_missing = [&](Part part) -> std::string {
+    if (part == Part::xy)
+      return repeats[0] && repeats[1] ? "" : "xy shears a cell: it needs box.x and box.y \"periodic\"";
+    const auto axis = static_cast<std::size_t>(axis_of(part));
+    if (part == Part::yy || part == Part::xx || !repeats[axis]) return "";
+    return fmt::format("box.{} is \"periodic\", there is no {} wall: write {}", axis == 0 ? "x" : "y",
+                       name_of(part), axis == 0 ? "xx" : "yy");
+  };
+  for (const Drive& drive : stage.drives)
+    if (std::string what = is_missing(drive.part); !what.empty()) return what;
+  for (std::size_t p = 0; p < parts_with_stress; ++p)
+    if (stage.until.stress[p])
+      if (std::string what = is_missing(static_cast<Part>(p)); !what.empty()) return what;
+  return stage.until.strain[2] ? is_missing(Part::xy) : "";
 }
 
 void check_stage(const Stage& stage, const StageText& text, const CaseDraft& draft) {
   if (const std::string fault = fault_of(stage); !fault.empty())
     throw StageFault{text.at, "[[stage]]: " + fault};
+  if (const std::string missing = missing_in(draft.the_case, stage); !missing.empty())
+    throw StageFault{text.at, "[[stage]]: " + missing};
   if (draft.the_case.experiment.loading == LoadingPath::diametral && !fits_one_grain(stage))
     throw StageFault{text.at,
                      "[[stage]]: one grain between two walls (experiment.loading = \"diametral\") takes "
@@ -152,6 +173,7 @@ Json json_of(const Until& until) {
   add("time", until.time);
   add("strain", until.strain[0]);
   add("strain_xx", until.strain[1]);
+  add("strain_xy", until.strain[2]);
   for (std::size_t p = 0; p < parts_with_stress; ++p) add(stress_word(p), until.stress[p]);
   add("packing_fraction", until.packing_fraction);
   add("overlap", until.overlap);

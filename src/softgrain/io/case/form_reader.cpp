@@ -23,7 +23,6 @@ constexpr std::array later_keys{
     LaterKey{"box.z", "space has two dimensions"},
     LaterKey{"box.die_friction", "a [[pair]] between a kind and \"wall\" holds for all walls"},
     LaterKey{"stage.zz", "space has two dimensions"},
-    LaterKey{"stage.xy", "walls do not shear"},
     LaterKey{"stage.set", "keys hold for the whole run"},
 };
 

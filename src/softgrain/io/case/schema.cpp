@@ -130,7 +130,9 @@ std::vector<Key> all_keys() {
       KEY(loading.hold_stress, "MPa", at_least(0),
           "vertical stress at which the walls leave their path: those that move keep it for loading.hold, which ends the run; "
           "isotropic: xx and yy each; 0: none (in a box)", packing_turning),
-      KEY(loading.confining_stress, "MPa", at_least(0), "that the side walls keep (biaxial)", biaxial),
+      KEY(loading.confining_stress, "MPa", at_least(0), "that the side walls keep (biaxial), that the periodic cell keeps (shear)", confining),
+      KEY(loading.shear_rate, "1/s", at_least(0), "of the shear strain (shear)", shearing),
+      KEY(loading.max_shear, "", positive(), "shear strain at the end (shear)", shearing),
       KEY(loading.rest, "", at_least(0), "kinetic over stored energy, below which the rest ends before loading.hold is over; 0: none (relaxation)", relaxing),
 
       KEY(time.step, "us", at_least(0),
@@ -156,6 +158,8 @@ std::vector<Key> all_keys() {
           "how many grains have each diameter of the list, in proportion; neither shares nor numbers: as many of each", listed),
       KEY(sample.placed, "", anything(),
           "the grains in their places, [x, y, radius, angle] of each in m and rad: what a run writes for sample.file", placed),
+      KEY(box.x, "", its_words(), "what ends the box along x: walls, or its own image", in_a_box),
+      KEY(box.y, "", its_words(), "the same along y; periodic only if x is", in_a_box),
       KEY(box.width, "mm", at_least(0), "of the box of placed grains; auto: from the first to the last point of all grains", placed, "auto"),
       KEY(box.height, "mm", at_least(0), "of the box of placed grains; auto: from the lowest to the highest point of all grains", placed, "auto"),
 

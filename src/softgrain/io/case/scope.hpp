@@ -74,6 +74,10 @@ inline constexpr Scope bpm_to_an_overlap{"on bpm in a box, on compaction, isotro
                                          [](const Case& c) { return is_bpm(c) && to_a_fraction.covers(c); }};
 inline constexpr Scope biaxial{"on biaxial paths",
                                [](const Case& c) { return is_path(c, LoadingPath::biaxial); }};
+inline constexpr Scope shearing{"on shear paths",
+                                [](const Case& c) { return is_path(c, LoadingPath::shear); }};
+inline constexpr Scope confining{"on biaxial and shear paths",
+                                 [](const Case& c) { return biaxial.covers(c) || shearing.covers(c); }};
 inline constexpr Scope relaxing{"on relaxation paths",
                                 [](const Case& c) { return is_path(c, LoadingPath::relaxation); }};
 inline constexpr Scope with_unloading{"with loading.unload_at",

@@ -9,13 +9,11 @@ namespace softgrain {
 
 template <>
 std::span<const Word<LoadingPath>> words_of() {
-  static constexpr std::array words{Word{LoadingPath::diametral, "diametral"},
-                                    Word{LoadingPath::compaction, "compaction"},
-                                    Word{LoadingPath::isotropic, "isotropic"},
-                                    Word{LoadingPath::biaxial, "biaxial"},
-                                    Word{LoadingPath::die, "die"},
-                                    Word{LoadingPath::relaxation, "relaxation"},
-                                    Word{LoadingPath::stages, "stages"}};
+  static constexpr std::array words{
+      Word{LoadingPath::diametral, "diametral"},   Word{LoadingPath::compaction, "compaction"},
+      Word{LoadingPath::isotropic, "isotropic"},   Word{LoadingPath::biaxial, "biaxial"},
+      Word{LoadingPath::shear, "shear"},           Word{LoadingPath::die, "die"},
+      Word{LoadingPath::relaxation, "relaxation"}, Word{LoadingPath::stages, "stages"}};
   return words;
 }
 
@@ -94,6 +92,12 @@ std::span<const Word<Precision>> words_of() {
 template <>
 std::span<const Word<Wave>> words_of() {
   static constexpr std::array words{Word{Wave::sine, "sine"}, Word{Wave::triangle, "triangle"}};
+  return words;
+}
+
+template <>
+std::span<const Word<BoxEnd>> words_of() {
+  static constexpr std::array words{Word{BoxEnd::walls, "walls"}, Word{BoxEnd::periodic, "periodic"}};
   return words;
 }
 

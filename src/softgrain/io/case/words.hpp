@@ -43,6 +43,8 @@ template <>
 std::span<const Word<Precision>> words_of();
 template <>
 std::span<const Word<Wave>> words_of();
+template <>
+std::span<const Word<BoxEnd>> words_of();
 
 /// "diametral" for LoadingPath::diametral.
 template <class Enum>

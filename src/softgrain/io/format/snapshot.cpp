@@ -25,7 +25,7 @@ using Datasets = std::map<std::string, Array>;
 
 const std::string checkpoint_group = "/checkpoint/", particle_group = "/scene/particles/",
                   contact_group = "/scene/contacts/", outline_group = "/scene/outlines/",
-                  walls_path = "/scene/walls", run_group = "/run/";
+                  walls_path = "/scene/walls", cell_path = "/scene/cell", run_group = "/run/";
 
 class Hash {
  public:
@@ -99,6 +99,7 @@ Datasets datasets_of(const Snapshot& snapshot) {
   add(contact_group, snapshot.scene.contacts);
   add(outline_group, snapshot.scene.outlines);
   datasets[walls_path] = {4, snapshot.scene.wall_segments};
+  if (!snapshot.scene.cell.empty()) datasets[cell_path] = {2, snapshot.scene.cell};
   for_each_total(snapshot.report, snapshot.sums, [&](const char* name, const auto& value) {
     datasets[run_group + name] = {1, std::vector{value}};
   });
@@ -122,6 +123,8 @@ Snapshot snapshot_of(const Datasets& datasets, const std::string& name) {
     snapshot.scene.contacts = arrays_of(datasets, contact_group);
     snapshot.scene.outlines = arrays_of(datasets, outline_group);
     snapshot.scene.wall_segments = std::get<std::vector<double>>(datasets.at(walls_path).values);
+    if (const auto cell = datasets.find(cell_path); cell != datasets.end())
+      snapshot.scene.cell = std::get<std::vector<double>>(cell->second.values);
     for_each_total(snapshot.report, snapshot.sums, [&]<class T>(std::string_view total, T& value) {
       const bool is_late = std::ranges::find(later_totals, total) != later_totals.end();
       if (is_late && !datasets.contains(run_group + std::string(total))) return;

@@ -109,12 +109,10 @@ TEST_CASE("what comes with later versions is refused by key and line, and says w
   check_not_yet("[[kind]]\nshape = 'ellipse'\n", "2:9", "today it is disk");
   check_not_yet("[[kind]]\nmodel = 'rigid'\n", "2:9", "today it is one of \"bpm\", \"mpm\"");
   check_not_yet("[[kind]]\nshare = 0.7\n", "2:9", "today it is 1");
-  check_not_yet("[box]\nx = 'periodic'\n", "2:5", "today it is walls");
   check_not_yet("[box]\ndie_friction = 0.2\n", "2:1", "[[pair]]");
   check_not_yet("[[kind]]\nname = 'a'\n[[pair]]\nbetween = ['a', 'a']\nsurface_energy = '0.05 J/m^2'\n",
                 "5:18", "today it is 0");
   check_not_yet("[[kind]]\nname = 'a'\n[[pair]]\nbetween = ['a', 'bottom']\n", "4:1", "is all of them");
-  check_not_yet("[[stage]]\nxy = { velocity = 1 }\n", "2:1", "walls do not shear");
   check_not_yet(
       "[[stage]]\nyy = { velocity = 1 }\nuntil = { strain = 0.1 }\nset = { 'pair.friction' = 0.3 }\n", "4:1",
       "hold for the whole run");

@@ -1,0 +1,14 @@
+#pragma once
+#include <span>
+
+#include "softgrain/geometry/periodic_cell.hpp"
+#include "softgrain/model/model.hpp"
+
+namespace softgrain {
+
+/// Shows each grain through its image whose centre lies in the cell, with the edges of the cell in place of
+/// walls that are not there, in the order of BoxWall. Grains reach across the edges; their other images are
+/// not shown, but scene.cell says where they are.
+void move_into_cell(const PeriodicCell<2>& cell, std::span<const Vec<2>> centres, Scene& scene);
+
+}  // namespace softgrain
