@@ -32,8 +32,9 @@ inline Words tiny_path(const std::string& name) {
   if (name == "relaxation")
     add({"loading.wall_velocity=\"1 m/s\"", "loading.hold=\"1 ms\"", "loading.rest=0"});
   if (name == "shear")
-    add({"sample.grains=9", "loading.wall_velocity=\"1 m/s\"", "loading.hold=\"3 ms\"",
-         "loading.shear_rate=40", "loading.max_shear=0.7", "loading.confining_stress=\"0.3 MPa\""});
+    add({"sample.grains=9", "loading.wall_velocity=\"0.5 m/s\"", "loading.hold=\"20 ms\"",
+         "loading.shear_rate=10", "loading.max_shear=0.55", "loading.confining_stress=\"1 MPa\"",
+         "time.step=\"20 us\""});
   return settings;
 }
 
