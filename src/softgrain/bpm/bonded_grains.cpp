@@ -44,6 +44,7 @@ BondedGrains::BondedGrains(BondedGrainsSetup setup)
     : grain_radius_(std::move(setup.grain_radius)),
       density_(setup.density),
       sigma_I_(setup.sigma_I),
+      gravity_(setup.gravity),
       friction_(setup.friction),
       attraction_(std::move(setup.laws)),
       dynamics_(std::move(setup.particles), {}, setup.options, setup.skin),
@@ -52,7 +53,8 @@ BondedGrains::BondedGrains(BondedGrainsSetup setup)
   set_reference(dynamics_.reference, dynamics_.particles);
   dynamics_.rebuild_contacts();
   attraction_.update(dynamics_.particles, dynamics_.reference);
-  work_.energy_start = attraction_.energy(dynamics_.particles);
+  work_.height_start = energy_of_height();
+  work_.energy_start = attraction_.energy(dynamics_.particles) + work_.height_start;
 }
 
 StepReport BondedGrains::step(Box<2>& box, double dt) {
@@ -66,6 +68,8 @@ StepReport BondedGrains::step(Box<2>& box, double dt) {
       [&](const RigidParticles<2>& particles, std::span<Vec<2>> force) {
         attraction_.update(particles, dynamics_.reference);
         attraction_.add_forces(particles, force);
+        if (gravity_ == Vec<2>{}) return;
+        for (int i = 0; i < particles.size(); ++i) force[i] += particles.mass[i] * gravity_;
       },
       dt);
   report.residual_limit = dynamics_.options.solver.worst_factor * dynamics_.options.solver.tolerance;
@@ -143,7 +147,15 @@ Energies BondedGrains::energies() const {
           .dissipation = work_.dissipation,
           .contact = work_.between,
           .friction = work_.friction,
-          .error = work_.walls - kinetic - (attraction - work_.energy_start) - work_.dissipation};
+          .error = work_.walls - kinetic - (attraction + energy_of_height() - work_.energy_start) -
+                   work_.dissipation};
+}
+
+double BondedGrains::energy_of_height() const {
+  double energy = 0;
+  for (int i = 0; i < dynamics_.particles.size(); ++i)
+    energy -= dynamics_.particles.mass[i] * dot(gravity_, dynamics_.particles.position[i]);
+  return energy;
 }
 
 int BondedGrains::clusters() const {
@@ -171,6 +183,7 @@ Numbers BondedGrains::numbers(const Box<2>& box) const {
                   {"attraction_energy", attraction_.energy(particles)},
                   {"dissipation_rearrangement", work_.dissipation - work_.between}};
   if (box.closed()) numbers.emplace_back("solid_fraction", solid_fraction(box));
+  if (!(gravity_ == Vec<2>{})) numbers.emplace_back("gravity_work", work_.height_start - energy_of_height());
   return numbers;
 }
 
@@ -227,8 +240,10 @@ void BondedGrains::visit(StateVisitor& visit) {
   visit({"work_dissipated_between", "J/m", Owner::run, Role::sum, "of it between grains and at walls"},
         work_.between);
   visit({"work_dissipated_sliding", "J/m", Owner::run, Role::sum, "of that by sliding"}, work_.friction);
-  visit({"energy_start", "J/m", Owner::run, Role::sum, "attraction and motion before the first step"},
+  visit({"energy_start", "J/m", Owner::run, Role::sum, "potential energies before the first step"},
         work_.energy_start);
+  if (!(gravity_ == Vec<2>{}))
+    visit({"height_start", "J/m", Owner::run, Role::sum, "of them that of gravity"}, work_.height_start);
   // the lists are a function of their reference, so they come back in the same order
   if (visit.reads()) {
     restore_reference(reference, particles, std::move(reference.position), std::move(reference.between),

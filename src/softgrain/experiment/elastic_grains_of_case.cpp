@@ -79,6 +79,7 @@ PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double
   const ImplicitOptions options{.tolerance = tolerance_of(c, grains, box.height()),
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
+                                .gravity = gravity_of(c),
                                 .damping = c.mpm.damping};
   ImplicitDynamics dynamics(std::move(grains), box, options);
   return {std::make_unique<ElasticGrains<ImplicitDynamics>>(std::move(dynamics)), std::move(box), dt};
@@ -89,6 +90,7 @@ PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box) {
   const ExplicitOptions options{.damping_share = damping_share,
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
+                                .gravity = gravity_of(c),
                                 .damping = c.mpm.damping};
   ExplicitDynamics dynamics(std::move(grains), box, options);
   return {std::make_unique<ElasticGrains<ExplicitDynamics>>(std::move(dynamics)), std::move(box), dt};
