@@ -87,6 +87,8 @@ def tame_case(draw):
     if draw.random() < 0.4:
         keys |= {"loading.unload_at": sorted(draw.uniform(0.5, 0.95) * last for _ in range(draw.randrange(1, 4))),
                  "loading.unload_by": draw.uniform(0.02, 0.4) * last}
+    if box and keys.get("box.y") != "periodic" and draw.random() < 0.3:
+        keys |= {"box.gravity_y": -log_uniform(draw, 1, 1e3), "box.gravity_x": draw.choice([0.0, draw.uniform(-9, 9)])}
     return keys
 
 
