@@ -31,6 +31,8 @@ inline Words tiny_path(const std::string& name) {
     add({"loading.wall_velocity=\"0.05 m/s\"", "loading.hold=\"40 ms\"", "loading.max_strain=0.12"});
   if (name == "relaxation")
     add({"loading.wall_velocity=\"1 m/s\"", "loading.hold=\"1 ms\"", "loading.rest=0"});
+  if (name == "jamming")
+    add({"sample.grains=9", "loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.15"});
   if (name == "shear")
     add({"sample.grains=9", "loading.wall_velocity=\"0.5 m/s\"", "loading.hold=\"20 ms\"",
          "loading.shear_rate=10", "loading.max_shear=0.55", "loading.confining_stress=\"1 MPa\"",
@@ -73,7 +75,9 @@ inline std::vector<TinyCase> tiny_cases() {
     const std::string name = entry.path().filename().string();
     const std::string source = (entry.path() / "case.toml").string();
     if (!fs::exists(source)) continue;
-    if (name == "die" || name == "tablet")
+    if (name == "jamming")
+      cases.push_back({name, source, tiny_path(name), 0});
+    else if (name == "die" || name == "tablet")
       cases.push_back({name, source, tiny_path(name), 5});
     else if (name == "biaxial" || name == "relaxation" || name == "shear")
       cases.push_back({name, source, tiny_path(name), name == "relaxation" ? 1U : 2U});
