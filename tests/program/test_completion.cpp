@@ -81,6 +81,8 @@ TEST_CASE("the columns that are offered are columns of a packing or of a grain")
                             "--set",
                             model == "cell" ? "sample.grains=12" : "sample.grains=4",
                             "--set",
+                            model == "metal" ? "box.gravity_y=-9.81" : "box.gravity_y=0",
+                            "--set",
                             "box.x=" + ends,
                             "--set",
                             "box.y=" + ends,

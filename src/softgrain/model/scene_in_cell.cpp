@@ -33,6 +33,18 @@ void move_with_grains(Arrays& arrays, std::span<const Vec<2>> shift) {
 
 }  // namespace
 
+PeriodicCell<2> cell_of(const Scene& scene) {
+  PeriodicCell<2> cell;
+  if (scene.cell.size() != 4) return cell;
+  for (int k = 0; k < 2; ++k) {
+    const double* vector = &scene.cell[static_cast<std::size_t>(2 * k)];
+    if (vector[0] == 0 && vector[1] == 0) continue;
+    cell.repeats[static_cast<std::size_t>(k)] = true;
+    for (int d = 0; d < 2; ++d) cell.edges(d, k) = vector[d];
+  }
+  return cell;
+}
+
 void move_into_cell(const PeriodicCell<2>& cell, std::span<const Vec<2>> centres, Scene& scene) {
   std::vector<Vec<2>> shift;
   for (const Vec<2>& x : centres) shift.push_back(shift_into(cell, x));

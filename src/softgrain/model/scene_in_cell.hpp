@@ -11,4 +11,7 @@ namespace softgrain {
 /// not shown, but scene.cell says where they are.
 void move_into_cell(const PeriodicCell<2>& cell, std::span<const Vec<2>> centres, Scene& scene);
 
+/// That of a scene; without lattice vectors nothing repeats.
+PeriodicCell<2> cell_of(const Scene& scene);
+
 }  // namespace softgrain

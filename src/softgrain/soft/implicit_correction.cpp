@@ -106,6 +106,12 @@ double ImplicitDynamics::unbalanced_force(std::span<const Vec<2>> contact_force)
          std::max(scale, least_contact_force());
 }
 
+double ImplicitDynamics::mean_contact_force(double dt) const {
+  double sum = 0;
+  for (const Vec<2>& p : impulse) sum += norm(p);
+  return sum / (dt * grains.size());
+}
+
 double ImplicitDynamics::least_contact_force() const {
   const double wave_speed = smallest_radius_ / wave_time_;
   return least_force * grains.density * wave_speed * wave_speed * mean_radius_;

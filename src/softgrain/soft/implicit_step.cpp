@@ -34,6 +34,9 @@ constexpr double quasi_static_proximal = 2;
 /// After so many sub-steps that succeeded, at most, longer ones are tried again.
 constexpr int most_patience = 4;
 
+/// A step that needs more sub-steps, those taken back included, is not of this motion.
+constexpr int most_sub_steps = 2000;
+
 /// Sub-steps shorter than this share of the explicit step are not tried.
 constexpr double shortest_step = 1.0 / 64;
 
@@ -68,7 +71,13 @@ SoftStepReport ImplicitDynamics::step(double dt) {
   if (sub_step <= 0) sub_step = dt;
   slow_ = step_of_matrix(dt) < dt;
   const double shortest = shortest_step * std::min(dt, explicit_step_);
+  int tried = 0;
   for (double done = 0; done < dt * (1 - 1e-9);) {
+    if (++tried > most_sub_steps)
+      throw NumericalError(fmt::format(
+          "the implicit step of {:.3g} s is {:.2g} of it through after {} sub-steps; use a smaller "
+          "time.step",
+          dt, done / dt, most_sub_steps));
     const double part = std::min(sub_step, dt - done);
     const Failure failure = try_step(part, report);
     if (failure == Failure::none) {
@@ -212,12 +221,6 @@ std::vector<double> ImplicitDynamics::friction_of_contacts() const {
   for (const OutlineContact& c : contacts)
     friction.push_back(c.wall >= 0 ? options.wall_friction : options.friction);
   return friction;
-}
-
-double ImplicitDynamics::mean_contact_force(double dt) const {
-  double sum = 0;
-  for (const Vec<2>& p : impulse) sum += norm(p);
-  return sum / (dt * grains.size());
 }
 
 /// Contacts at the present positions, and their impulses by NLGS with warm start. True if it converged.

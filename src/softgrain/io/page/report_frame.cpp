@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "softgrain/io/page/report_chains.hpp"
+#include "softgrain/model/scene_in_cell.hpp"
 
 namespace softgrain {
 
@@ -127,6 +128,21 @@ void add_grain_means(ReportFrame& frame) {
   }
 }
 
+/// Of chains across the edges of a periodic cell the page would draw a line through all of it.
+void leave_out_crossing(ReportFrame& frame, const Scene& scene, std::size_t movable,
+                        std::vector<Chain>& chains) {
+  const PeriodicCell<2> cell = cell_of(scene);
+  const bool of_grains = frame.contacts_of_grains;
+  const FrameColumn x = of_grains ? frame.columns["grain.x"] : column_of(scene.particles.at("position"), 0),
+                    y = of_grains ? frame.columns["grain.y"] : column_of(scene.particles.at("position"), 1);
+  const auto crosses = [&](const Chain& chain) {
+    const auto a = static_cast<std::size_t>(chain.a), b = static_cast<std::size_t>(chain.b);
+    if (std::max(a, b) >= movable) return false;
+    return cell.nearest({double{x[b]} - x[a], double{y[b]} - y[a]}) != PeriodicCell<2>::Image{};
+  };
+  chains.erase(std::remove_if(chains.begin(), chains.end(), crosses), chains.end());
+}
+
 void add_contacts(ReportFrame& frame, const Scene& scene) {
   std::vector<Chain> chains;
   const auto pair = scene.contacts.find("pair"), force = scene.contacts.find("force");
@@ -140,6 +156,7 @@ void add_contacts(ReportFrame& frame, const Scene& scene) {
     for (std::size_t c = 0; c < std::min({a.size(), b.size(), f.size()}); ++c)
       if (f[c] > 0 && std::min(a[c], b[c]) >= 0 && std::max(a[c], b[c]) < bodies)
         chains.push_back({static_cast<int>(a[c]), static_cast<int>(b[c]), double{f[c]}});
+    if (!scene.cell.empty()) leave_out_crossing(frame, scene, movable, chains);
   } else {
     frame.contacts_of_grains = true;
     chains = chains_between_outlines(scene);
