@@ -31,6 +31,9 @@ inline Words tiny_path(const std::string& name) {
     add({"loading.wall_velocity=\"0.05 m/s\"", "loading.hold=\"40 ms\"", "loading.max_strain=0.12"});
   if (name == "relaxation")
     add({"loading.wall_velocity=\"1 m/s\"", "loading.hold=\"1 ms\"", "loading.rest=0"});
+  if (name == "rubber_sand")
+    add({"loading.wall_velocity=\"5 m/s\"", "loading.unload_at=[0.25]", "loading.unload_by=0.05",
+         "loading.max_stress=0"});
   if (name == "shear")
     add({"sample.grains=9", "loading.wall_velocity=\"1 m/s\"", "loading.hold=\"3 ms\"",
          "loading.shear_rate=40", "loading.max_shear=0.7", "loading.confining_stress=\"0.3 MPa\""});
@@ -74,6 +77,8 @@ inline std::vector<TinyCase> tiny_cases() {
     if (!fs::exists(source)) continue;
     if (name == "die" || name == "tablet")
       cases.push_back({name, source, tiny_path(name), 5});
+    else if (name == "rubber_sand")
+      cases.push_back({name, source, tiny_path(name)});
     else if (name == "biaxial" || name == "relaxation" || name == "shear")
       cases.push_back({name, source, tiny_path(name), name == "relaxation" ? 1U : 2U});
     else
