@@ -19,7 +19,7 @@ double plane(double modulus) { return modulus / (1 - nu * nu); }
 
 /// Grains on top of one another, pressed by the top wall: the force, and how much nearer the centres of mass
 /// have come, from the bottom wall up to the top one [m].
-struct Column {
+struct Pile {
   double top = 0, bottom = 0;
   std::vector<double> approach;
 };
@@ -36,7 +36,7 @@ double height_of(const SoftGrains& grains, int grain) {
 }
 
 /// moduli: of each grain, from below. The wall comes down by `way` in so many steps.
-Column press(const std::vector<double>& moduli, double way, int steps) {
+Pile press(const std::vector<double>& moduli, double way, int steps) {
   const auto shape = test::disk(16);
   std::vector<GrainPlacement> placed;
   std::vector<GrainMaterial> materials;
@@ -53,15 +53,15 @@ Column press(const std::vector<double>& moduli, double way, int steps) {
   std::vector<double> start;
   for (int g = 0; g < dynamics.grains.size(); ++g) start.push_back(height_of(dynamics.grains, g));
   for (int k = 0; k < steps; ++k) dynamics.step(dt);
-  Column column{.top = dynamics.wall_impulse(1)[1] / dt, .bottom = -dynamics.wall_impulse(0)[1] / dt};
+  Pile pile{.top = dynamics.wall_impulse(1)[1] / dt, .bottom = -dynamics.wall_impulse(0)[1] / dt};
   double below = 0;
   for (int g = 0; g < dynamics.grains.size(); ++g) {
     const double sunk = start[g] - height_of(dynamics.grains, g);
-    column.approach.push_back(sunk - below);
+    pile.approach.push_back(sunk - below);
     below = sunk;
   }
-  column.approach.push_back(way - below);
-  return column;
+  pile.approach.push_back(way - below);
+  return pile;
 }
 
 /// How much nearer the centre of a disk comes to a contact of half-width a (Johnson, Contact
@@ -85,19 +85,19 @@ double at_wall(double F, double modulus) { return johnson(F, modulus, half_width
 TEST_CASE(
     "two grains of different stiffness in series bear one force, and each contact gives way as Johnson "
     "says") {
-  const Column column = press({E, 5 * E}, 0.03 * R, 30);
-  const double F = column.top;
-  CHECK(column.bottom == doctest::Approx(F).epsilon(1e-3));
-  CHECK(column.approach[0] == doctest::Approx(at_wall(F, E)).epsilon(0.03));
-  CHECK(column.approach[1] == doctest::Approx(between(F, E, 5 * E)).epsilon(0.03));
-  CHECK(column.approach[2] == doctest::Approx(at_wall(F, 5 * E)).epsilon(0.05));
+  const Pile pile = press({E, 5 * E}, 0.03 * R, 30);
+  const double F = pile.top;
+  CHECK(pile.bottom == doctest::Approx(F).epsilon(1e-3));
+  CHECK(pile.approach[0] == doctest::Approx(at_wall(F, E)).epsilon(0.03));
+  CHECK(pile.approach[1] == doctest::Approx(between(F, E, 5 * E)).epsilon(0.03));
+  CHECK(pile.approach[2] == doctest::Approx(at_wall(F, 5 * E)).epsilon(0.05));
 }
 
 TEST_CASE("two grains touch as two equal ones whose compliance is the mean of theirs") {
-  const Column unlike = press({E, 5 * E}, 0.03 * R, 30);
+  const Pile unlike = press({E, 5 * E}, 0.03 * R, 30);
   // 1/E* = (1 - nu^2)/E1 + (1 - nu^2)/E2 = 2 (1 - nu^2)/E
   const double equivalent = 2 / (1 / E + 1 / (5 * E));
-  const Column alike = press({equivalent, equivalent}, 0.03 * R, 30);
+  const Pile alike = press({equivalent, equivalent}, 0.03 * R, 30);
   // Johnson's law leads from the force of one run to that of the other
   const double by_law = between(unlike.top, E, 5 * E) / between(alike.top, equivalent, equivalent);
   CHECK(unlike.approach[1] / alike.approach[1] == doctest::Approx(by_law).epsilon(0.01));
@@ -107,15 +107,15 @@ TEST_CASE("between two far stiffer grains a soft one is pressed as by rigid disk
   double before = 1;
   for (const double ratio : {10.0, 100.0, 1000.0}) {
     CAPTURE(ratio);
-    const Column column = press({ratio * E, E, ratio * E}, 0.03 * R, 30);
-    const double F = column.top;
+    const Pile pile = press({ratio * E, E, ratio * E}, 0.06 * R, 30);
+    const double F = pile.top;
     const double rigid = johnson(F, E, half_width(F, R / 2, plane(E)));  // of a disk on a rigid one
-    const double excess = (column.approach[1] + column.approach[2]) / 2 / rigid - 1;
-    CHECK(column.approach[1] == doctest::Approx(column.approach[2]).epsilon(0.01));
+    const double excess = (pile.approach[1] + pile.approach[2]) / 2 / rigid - 1;
+    CHECK(pile.approach[1] == doctest::Approx(pile.approach[2]).epsilon(0.01));
     CHECK(excess < before);
     before = excess;
   }
-  CHECK(std::abs(before) < 0.03);
+  CHECK(std::abs(before) < 0.01);
 }
 
 TEST_CASE("identical materials that are declared as two kinds press as one kind") {

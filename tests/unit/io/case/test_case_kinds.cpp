@@ -156,7 +156,7 @@ TEST_CASE("mistakes in several kinds are told with line, column and remedy") {
   CHECK(mentions(refusal(in_box + "[[kind]]\nname = 'b'\n[[kind]]\nname = 'b'\n"),
                  "two [[kind]] have the name 'b'"));
   CHECK(
-      mentions(refusal(two + "law = { name = 'von_mises' }\n"), "case.toml:10:16: error: kind 'b': mpm.law"));
+      mentions(refusal(two + "law = { name = 'von_mises' }\n"), "case.toml:10:9: error: kind 'b': mpm.law"));
   CHECK(
       mentions(refusal(two + "density = -1\n"), "case.toml:10:11: error: kind.density = -1 is out of range"));
   CHECK(mentions(refusal(two + "density = 1\ndensity = 2\n"), "case.toml:11"));
