@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that softgrain needs; the only place that names them. Does nothing when all are there.
-#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, bench, peers, viewer, torture, cluster, shells, paraview, clang, wasm
+#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, fit, movie, bench, peers, viewer, torture, cluster, shells, paraview, clang, wasm
 #   tools/install_dependencies.sh --list                 the table below
 # Why each was chosen: docs/decisions/0002-dependencies.md
 set -euo pipefail
@@ -33,6 +33,10 @@ pictures   python3                 softgrain plot
 pictures   python3-numpy           softgrain plot
 pictures   python3-matplotlib      softgrain plot
 pictures   python3-h5py            softgrain plot reads the snapshots
+tests      python3-scipy           tests of softgrain fit
+tests      python3-ase             reads our extended XYZ
+fit        python3-scipy           softgrain fit, 60 MB
+movie      ffmpeg                  softgrain movie writes MP4, 0.16 GB
 checks     python3                 tools/check_layers
 checks     clang-format            one format for all sources
 checks     clang-tidy              names and common mistakes
@@ -68,7 +72,7 @@ groups="build libraries python tests pictures"
 while (($#)); do
   case "$1" in
     --list) table && exit 0 ;;
-    --with) groups+=" ${2:?--with needs a group: checks, docs, bench, peers, viewer, torture, cluster, shells, paraview, clang or wasm}" && shift 2 ;;
+    --with) groups+=" ${2:?--with needs a group: checks, docs, fit, movie, bench, peers, viewer, torture, cluster, shells, paraview, clang or wasm}" && shift 2 ;;
     *) sed -n '2,4s/^# //p' "$0" >&2 && exit 2 ;;
   esac
 done

@@ -75,6 +75,10 @@ void add_verbs(CLI::App& app) {
   add_python_verb(app, "sweep");
   add_python_verb(app, "reproduce");
   add_python_verb(app, "plot");
+  add_python_verb(app, "movie");
+  add_python_verb(app, "methods");
+  add_python_verb(app, "compare");
+  add_python_verb(app, "fit");
   add_report_verb(app);
   add_export_verb(app);
   add_python_verb(app, "paraview");

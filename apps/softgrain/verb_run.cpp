@@ -172,18 +172,20 @@ fs::path directory_beside(const fs::path& run) {
   return named.string() + "_on";
 }
 
-/// A new run from a state of another one, with that one's case and what `--set` changes of it.
+/// A new run from a state of another one, with a case of its own or that one's, and what `--set` changes of
+/// it.
 void run_from(const RunArguments& arguments) {
   const OriginState origin = read_origin(arguments.from);
   RunRequest request = request_of(arguments.options, false);
+  const std::string& own = arguments.the_case.path;
   const CaseReading reading =
-      read_case_with_notes(origin.paths.case_file().string(), arguments.the_case.sets);
+      read_case_with_notes(own.empty() ? origin.paths.case_file().string() : own, arguments.the_case.sets);
   request.the_case = reading.the_case;
   request.case_text = resolved_case_text(request.the_case);
   request.origins = origin.origins;
   check_case(request.the_case);
-  const RunPaths paths{arguments.options.directory.empty() ? directory_beside(origin.paths.root)
-                                                           : fs::path(arguments.options.directory)};
+  const fs::path beside = own.empty() ? directory_beside(origin.paths.root) : default_directory(own);
+  const RunPaths paths{arguments.options.directory.empty() ? beside : fs::path(arguments.options.directory)};
   if (!arguments.force) require_resources(estimate(request.the_case), available_resources(paths.root));
   const RunDirectory directory(
       paths.root, arguments.force ? RunDirectory::IfNotEmpty::keep : RunDirectory::IfNotEmpty::refuse);
@@ -222,16 +224,17 @@ void add_run_verb(CLI::App& app) {
   auto* run = app.add_subcommand("run", "Carry out a case; its results go to a directory");
   auto arguments = std::make_shared<RunArguments>();
   add_case_arguments(*run, arguments->the_case);
-  CLI::Option* the_case = run->get_option("CASE")->required(false);
+  run->get_option("CASE")->required(false);
   run->add_option("-o,--output", arguments->options.directory,
                   "directory (default: CASE without .toml, with _run)")
       ->type_name("DIR");
   auto* resume = run->add_flag("--resume", arguments->resume,
                                "go on from the newest intact snapshot, if there is one; also to a later end");
-  run->add_option("--from", arguments->from,
-                  "begin from the last state of a run, or RUN@STEP, with its case and what --set changes")
+  run->add_option(
+         "--from", arguments->from,
+         "begin from the last state of a run, or RUN@STEP, with CASE or its own case, and what --set "
+         "changes")
       ->type_name("RUN")
-      ->excludes(the_case)
       ->excludes(resume);
   run->add_flag("--force", arguments->force,
                 "replace an earlier run's results; begin even where memory or disk seem too small")
@@ -245,6 +248,7 @@ void add_run_verb(CLI::App& app) {
       "further\n"
       "  softgrain run --from out@4000 --set contact.friction=0.3 -o rough         other friction from step "
       "4000\n"
+      "  softgrain run shear.toml --from out                              other stages for the same grains\n"
       "  softgrain run case.toml -o out --resume --stop-after \"23 h\"    in a queue: exit code 75 asks to "
       "come again\n"
       "\nCtrl-C: finish the step, write a snapshot, exit 130. SIGTERM, SIGUSR2, SIGHUP: the same, exit 75. "

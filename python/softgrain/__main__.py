@@ -1,4 +1,4 @@
-"""What `softgrain plot`, `sweep`, `export` and `reproduce` become: python3 DIR/softgrain VERB WORDS."""
+"""What `softgrain plot`, `movie`, `sweep`, `export` and the other verbs of Python become: python3 DIR/softgrain VERB WORDS."""
 
 import gc
 import sys
@@ -19,8 +19,9 @@ def main(verb, *words):
             import h5py  # noqa: F401  needed later, wanted now
         program = import_module(f"softgrain.{verb}.__main__")
     except ImportError as missing:
-        print(f"error: {missing}\n`softgrain {verb}` needs NumPy, h5py and Matplotlib for {sys.executable}; on Debian:\n"
-              "  apt install python3-matplotlib python3-h5py", file=sys.stderr)
+        more = (", SciPy", " python3-scipy") if verb == "fit" else ("", "")
+        print(f"error: {missing}\n`softgrain {verb}` needs NumPy, h5py{more[0]} and Matplotlib for {sys.executable}; on Debian:\n"
+              f"  apt install python3-matplotlib python3-h5py{more[1]}", file=sys.stderr)
         return 2
     return program.main(words)
 

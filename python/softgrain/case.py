@@ -50,7 +50,7 @@ class Case:
 
     def resolve(self) -> dict:
         """The whole case in SI, with every default filled in. Raises CaseError."""
-        return json.loads(_call("check", *self._words(), "--json"))["case"]
+        return json.loads(call_program("check", *self.words(), "--json"))["case"]
 
     def _repr_html_(self) -> str:
         """What a notebook shows: the values that are not left to their defaults, unchecked."""
@@ -58,7 +58,8 @@ class Case:
         name = "" if self.path == os.devnull else str(self.path)
         return html_table(name, {**given, **dict(self.values)})
 
-    def _words(self) -> list[str]:
+    def words(self) -> list[str]:
+        """The words that name this case to the program."""
         return [str(self.path), *(f"--set={key}={value}" for key, value in self.values)]
 
 
@@ -70,7 +71,7 @@ def run_case(case: Case | str | Path, directory: str | Path, threads: int | None
     if threads is not None:
         options.append(f"--threads={threads}")
     try:
-        _call("run", *case._words(), "-o", str(directory), "--quiet", *options)
+        call_program("run", *case.words(), "-o", str(directory), "--quiet", *options)
     except RunFailed as failure:
         if failure.code != DOUBTFUL:
             raise
@@ -78,7 +79,7 @@ def run_case(case: Case | str | Path, directory: str | Path, threads: int | None
     return open_run(directory)
 
 
-def _call(*words: str) -> str:
+def call_program(*words: str) -> str:
     """Stdout of `softgrain words`; SOFTGRAIN_PROGRAM names another program."""
     program = os.environ.get("SOFTGRAIN_PROGRAM", "softgrain")
     with subprocess.Popen([program, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:

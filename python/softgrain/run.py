@@ -194,6 +194,10 @@ class Plots:
         """Coordination number and packing fraction."""
         return self._draw("draw_packing", [self.run])
 
+    def shear(self):
+        """Stress ratio, packing fraction and coordination number of a periodic cell over shear strain."""
+        return self._draw("draw_shear", [self.run])
+
     def diagnostics(self):
         """What the solver and the energies did."""
         return self._draw("draw_diagnostics", self.run)

@@ -2,6 +2,7 @@
 
 import contextlib
 import dataclasses
+import importlib.util
 import io
 import os
 import re
@@ -19,6 +20,7 @@ import h5py
 import matplotlib.image
 import numpy as np
 import synthetic
+from small_runs import CASES, small_run
 
 import softgrain
 from softgrain import colours, picture
@@ -122,6 +124,23 @@ class Particles(Temporary):
         self.assertIn("3 snapshots", err)
 
 
+    @unittest.skipUnless(importlib.util.find_spec("ase"), "ASE is not here, so it did not read our file: apt install python3-ase")
+    def test_ase_reads_every_frame_of_runs_of_both_models(self):
+        import ase.io
+
+        for name in CASES:
+            run, path = small_run(name), self.folder / f"{name}.xyz"
+            with contextlib.redirect_stdout(io.StringIO()):
+                self.assertEqual(__main__.main([str(run.path), "--to=xyz", "-o", str(path)]), 0)
+            frames = ase.io.read(path, index=":")
+            self.assertEqual([frame.info["Step"] for frame in frames], [snapshot.step for snapshot in run])
+            for frame, snapshot in zip(frames, run):
+                np.testing.assert_allclose(frame.positions[:, :2], snapshot.particles["position"], rtol=1e-8, atol=1e-14)
+                np.testing.assert_allclose(frame.arrays["radius"], snapshot.particles["radius"], rtol=1e-8)
+                np.testing.assert_allclose(frame.arrays["pressure"], snapshot.particles["pressure"], rtol=1e-8)
+                self.assertFalse(frame.pbc.any())
+
+
 class Pictures(Temporary):
     def svg(self, *arguments):
         _, path, _ = self.export("--to=svg", *arguments)
@@ -136,7 +155,7 @@ class Pictures(Temporary):
         scale = (pixels[-1] - pixels[0]) / (position[-1] - position[0])
         np.testing.assert_allclose(scale, scale[0], rtol=1e-3)
         self.assertAlmostEqual(float(disks[0].get("r")), scale[0] * synthetic.RADIUS, places=1)
-        self.assertEqual(len(root.findall("{*}line")), 2)
+        self.assertEqual(len(root.findall("{*}line")), 3)  # two walls, and the key of the chains
 
     def test_each_of_many_grains_is_its_outline_the_more_pressed_the_brighter(self):
         self.add_grains()
@@ -162,6 +181,28 @@ class Pictures(Temporary):
         widths = np.array([float(line.get("stroke-width")) for line in lines])
         force = np.sort(self.run_of_bonds[-1].contacts["force"])
         np.testing.assert_allclose(widths / widths[-1], force / force[-1], atol=2e-3)
+
+    def test_the_key_of_the_chains_has_the_width_of_its_force(self):
+        root = self.svg()
+        (key,) = [line for line in root.findall("{*}line") if line.get("class") == "chain-key"]
+        words = [text.text for text in root.findall("{*}text")]
+        (force,) = [float(word.removesuffix(" N/m")) for word in words if word.endswith(" N/m")]
+        widest = max(float(line.get("stroke-width")) for line in root.findall("{*}g/{*}line"))
+        largest = self.run_of_bonds[-1].contacts["force"].max()
+        self.assertAlmostEqual(float(key.get("stroke-width")) / widest, force / largest, delta=0.02)
+
+    def test_frames_of_real_runs_share_their_keys_and_their_place(self):
+        for name in CASES:
+            run, heads = small_run(name), []
+            for frame in range(len(run)):
+                path = self.folder / f"{name}_{frame}.svg"
+                with contextlib.redirect_stdout(io.StringIO()):
+                    self.assertEqual(__main__.main([str(run.path), "--to=svg", f"--frame={frame}", "-o", str(path)]), 0)
+                root = ElementTree.parse(path).getroot()
+                heads.append((root.get("viewBox"), *(text.text for text in root.findall("{*}text"))))
+            self.assertEqual(len(set(heads)), 1)
+            self.assertTrue(any("pressure [" in word for word in heads[0]))
+            self.assertEqual(any(word.endswith(" N/m") for word in heads[0]), name != "elastic")
 
 
 class Colours(unittest.TestCase):

@@ -213,6 +213,39 @@ class Pictures(Temporary):
         with self.assertRaises(softgrain.NotRecorded):
             plot.draw_packing([self.open("grain")])
 
+    def test_a_cell_in_shear_shows_its_ratio_over_gamma_with_the_mean_of_the_second_half(self):
+        run = self.open(columns=("strain", "phi", "z", "shear_strain", "stress_ratio"))
+        gamma = run.series["shear_strain"]
+        gamma[:] = np.maximum(0, np.linspace(-0.5, 1, gamma.size))
+        run.series["stress_ratio"][:] = np.where(gamma >= 0.5, 0.25, 0.1)
+        with plot.style():
+            panels = plot.draw_shear([run]).axes
+        self.assertEqual(len(panels), 3)
+        self.assertTrue((panels[0].lines[0].get_xdata() > 0).all())
+        self.assertEqual(panels[0].get_legend().get_texts()[0].get_text(), r"0.250 $\pm$ 0.000")
+        with self.assertRaises(softgrain.NotRecorded):
+            plot.draw_shear([self.open("grain")])
+
+    def test_grains_that_reach_across_a_periodic_cell_are_shown_at_both_ends(self):
+        square = 0.2 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+        centres = np.array([(0.5, 0.5), (1.3, 0.5), (0.1, 0.95)])
+        snapshot = softgrain.Snapshot(
+            step=0, time=0.0, cell=np.array([(1.2, 0.0), (0.3, 1.0)]),
+            walls=np.array([(0, 0, 1.2, 0), (0.3, 1, 1.5, 1), (0, 0, 0.3, 1), (1.2, 0, 1.5, 1)], float),
+            particles={"position": centres, "radius": np.full(3, 0.1), "grain": np.arange(3)},
+            contacts={"pair": np.array([(0, 1), (1, 2)]), "force": np.array([1.0, 2.0])},
+            outlines={"position": np.concatenate([square + x for x in centres]), "grain": np.repeat(np.arange(3), 4)})
+        shapes = picture.grains(snapshot, np.arange(3))
+        shown = sorted((float(value), *np.round(polygon.mean(axis=0), 9)) for value, polygon in zip(shapes.values, shapes.polygons))
+        self.assertEqual([place for place in shown if place[0] == 0], [(0, 0.5, 0.5)])
+        self.assertIn((1.0, 0.1, 0.5), shown)  # across the right edge, which leans: one lattice vector to the left
+        self.assertIn((2.0, -0.2, -0.05), shown)
+        self.assertEqual(len(picture.cell_edges(snapshot)), 4)
+        self.assertEqual(len(picture.walls(snapshot)), 0)
+        chains = picture.chains(snapshot, picture.ForceScale(1.0, 0.1))
+        ways = np.hypot(*(chains.segments[:, 1] - chains.segments[:, 0]).T)
+        np.testing.assert_allclose(sorted(ways), [0.4, 0.4, 0.45, 0.45])  # from each end to the image of the other
+
     def test_one_colour_range_serves_the_whole_run(self):
         run = self.open()
         snapshots = [run[i] for i in range(len(run))]

@@ -61,7 +61,8 @@ TEST_CASE("the columns that are offered are columns of a packing or of a grain")
   const softgrain::test::TemporaryDirectory folder;
   std::string header;
   for (const std::string loading : {"compaction", "diametral"})
-    for (const std::string model : {"mpm", "bpm", "metal"}) {
+    for (const std::string model : {"mpm", "bpm", "metal", "cell"}) {
+      const std::string ends = model == "cell" ? "periodic" : "walls";
       const std::string out = (folder.path() / (loading + model)).string();
       softgrain::test::run({SOFTGRAIN_PROGRAM,
                             "run",
@@ -78,7 +79,11 @@ TEST_CASE("the columns that are offered are columns of a packing or of a grain")
                             "--set",
                             model == "metal" ? "mpm.yield_stress=1e5" : "mpm.yield_stress=0",
                             "--set",
-                            "sample.grains=4",
+                            model == "cell" ? "sample.grains=12" : "sample.grains=4",
+                            "--set",
+                            "box.x=" + ends,
+                            "--set",
+                            "box.y=" + ends,
                             "--set",
                             "mpm.cells=2",
                             "--set",

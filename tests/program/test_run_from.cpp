@@ -100,6 +100,20 @@ TEST_CASE("a run that began from another lets go, is resumed with the same bits,
   CHECK(json.at("begun_from")[1].at("directory").get<std::string>().ends_with("/first"));
 }
 
+TEST_CASE("a case of its own gives another run's grains other stages") {
+  const Workshop workshop;
+  workshop.compact("mpm");
+  std::string own = read_text(workshop.folder.path() / "first/case.toml");
+  own.replace(own.find("loading = \"compaction\""), 22, "loading = \"stages\"");
+  workshop.folder.file("own.toml", own + "\n[[stage]]\ntop = { velocity = -1.0 }\nuntil = { time = 5e-5 }\n");
+  const auto made = workshop.program({"run", "own.toml", "--from", "first", "-q"});
+  CAPTURE(made.err);
+  CHECK(made.exit_code == 0);
+  CHECK(workshop.row("own_run", false).at("wall_height") == workshop.row("first", true).at("wall_height"));
+  CHECK(workshop.row("own_run", true).at("wall_height") ==
+        doctest::Approx(workshop.row("first", true).at("wall_height") + 5e-5).epsilon(1e-6));
+}
+
 TEST_CASE("a state that is not there, or is of other grains, is refused and leaves nothing") {
   const Workshop workshop;
   workshop.compact("mpm");

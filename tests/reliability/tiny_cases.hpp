@@ -34,9 +34,12 @@ inline Words tiny_path(const std::string& name) {
   if (name == "rubber_sand")
     add({"loading.wall_velocity=\"5 m/s\"", "loading.unload_at=[0.25]", "loading.unload_by=0.05",
          "loading.max_stress=0"});
+  if (name == "jamming")
+    add({"sample.grains=9", "loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.15"});
   if (name == "shear")
-    add({"sample.grains=9", "loading.wall_velocity=\"1 m/s\"", "loading.hold=\"3 ms\"",
-         "loading.shear_rate=40", "loading.max_shear=0.7", "loading.confining_stress=\"0.3 MPa\""});
+    add({"sample.grains=9", "loading.wall_velocity=\"0.5 m/s\"", "loading.hold=\"20 ms\"",
+         "loading.shear_rate=10", "loading.max_shear=0.55", "loading.confining_stress=\"1 MPa\"",
+         "time.step=\"20 us\""});
   return settings;
 }
 
@@ -75,7 +78,9 @@ inline std::vector<TinyCase> tiny_cases() {
     const std::string name = entry.path().filename().string();
     const std::string source = (entry.path() / "case.toml").string();
     if (!fs::exists(source)) continue;
-    if (name == "die" || name == "tablet")
+    if (name == "jamming")
+      cases.push_back({name, source, tiny_path(name), 0});
+    else if (name == "die" || name == "tablet")
       cases.push_back({name, source, tiny_path(name), 5});
     else if (name == "rubber_sand")
       cases.push_back({name, source, tiny_path(name)});

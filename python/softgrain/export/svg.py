@@ -46,16 +46,26 @@ def write_svg(snapshot, scale, file):
     file.write(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height + LEGEND:.1f}">\n'
                f"<title>step {snapshot.step}, time {snapshot.time:.6g} s</title>\n")
     file.writelines(_surface(snapshot, scale, place, pixels))
-    if scale.force and not (picture.is_elastic(snapshot) and len(snapshot.body_radii()) < 2):
-        colour = scale.colour.chains if scale.colour else colours.CHAINS
-        file.writelines(_chains(picture.chains(snapshot, scale.force), colour, place, pixels))
+    if _shows_chains(snapshot, scale):
+        file.writelines(_chains(picture.chains(snapshot, scale.force), _chain_colour(scale), place, pixels))
     for wall in picture.walls(snapshot):
         file.write(_line(place(wall), 'stroke-width="3"'))
     for edge in picture.cell_edges(snapshot):
         file.write(_line(place(edge), 'stroke-width="1" stroke-dasharray="6 4"'))
     if scale.colour:
         file.writelines(_legend(scale.colour, MARGIN * WIDTH, height))
+    if _shows_chains(snapshot, scale):
+        file.writelines(_chain_key(scale, WIDTH * (1 - MARGIN), height, pixels))
     file.write("</svg>\n")
+
+
+def _shows_chains(snapshot, scale):
+    """What two walls do to one elastic grain is no chain."""
+    return scale.force and not (picture.is_elastic(snapshot) and len(snapshot.body_radii()) < 2)
+
+
+def _chain_colour(scale):
+    return scale.colour.chains if scale.colour else colours.CHAINS
 
 
 def _surface(snapshot, scale, place, pixels):
@@ -105,3 +115,12 @@ def _legend(colour, left, top):
     for value, x, anchor in ((colour.low, left, "start"), (colour.high, left + 340, "end")):
         yield f'<text x="{x:.1f}" y="{top + 36:.1f}" text-anchor="{anchor}" {TEXT}>{value / factor:.3g}</text>\n'
     yield f'<text x="{left + 360:.1f}" y="{top + 14:.1f}" {TEXT}>pressure [{unit}]</text>\n'
+
+
+def _chain_key(scale, right, top, pixels):
+    """A line as wide as half of the largest force is, with its force."""
+    force = float(f"{scale.force.force / 2:.0e}")  # one digit
+    share = force / scale.force.force
+    yield (f'<line class="chain-key" x1="{right - 150:.1f}" y1="{top + 7:.1f}" x2="{right - 110:.1f}" y2="{top + 7:.1f}" '
+           f'stroke="{_chain_colour(scale)}" stroke-width="{pixels * scale.force.width * share:.2f}" stroke-opacity="{share:.2f}"/>\n')
+    yield f'<text x="{right - 100:.1f}" y="{top + 14:.1f}" {TEXT}>{force:g} N/m</text>\n'

@@ -5,6 +5,7 @@ from .die import draw_die, draw_heckel, draw_kawakita
 from .diagnostics import draw_diagnostics
 from .grain import draw_grain
 from .packing import draw_packing
+from .shear import draw_shear
 from .style import save, style
 
-__all__ = ["draw_curve", "draw_diagnostics", "draw_die", "draw_grain", "draw_heckel", "draw_kawakita", "draw_packing", "save", "style"]
+__all__ = ["draw_curve", "draw_diagnostics", "draw_die", "draw_grain", "draw_heckel", "draw_kawakita", "draw_packing", "draw_shear", "save", "style"]

@@ -19,6 +19,8 @@ def draw(options):
     figures = {"curve": (runs, lambda: plot.draw_curve(runs, names, options.normalise))}
     if any({"phi", "z"} <= run.series.keys() for run in runs) or options.kind == "packing":
         figures["packing"] = (runs, lambda: plot.draw_packing(runs, names))
+    if any("shear_strain" in run.series for run in runs) or options.kind == "shear":
+        figures["shear"] = (runs, lambda: plot.draw_shear(runs, names))
     for run, name in zip(runs, names):
         suffix = "" if len(runs) == 1 else "-" + name.replace("/", "-")
         figures["grain" + suffix] = ([run], lambda run=run: plot.draw_grain(run))

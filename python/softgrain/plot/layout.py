@@ -63,14 +63,26 @@ def panel_grid(extents, rows):
     height = scale * (top - bottom)
     page_width = LEFT + scale * widths.sum() + gaps + RIGHT
     page_height = TOP + rows * height + (rows - 1) * ROW_GAP + BOTTOM
-    figure = Figure(figsize=(page_width * MM, page_height * MM))
-    axes = figure.add_axes((0, 0, 1, 1), xlim=(0, page_width), ylim=(0, page_height))
-    axes.set_axis_off()
+    figure, axes = page(page_width, page_height)
     panels = np.empty((rows, len(extents)), object)
     lefts = LEFT + np.append(0, np.cumsum(scale * widths + COLUMN_GAP))
     for row, column in np.ndindex(panels.shape):
         x, y = lefts[column], page_height - TOP - (row + 1) * height - row * ROW_GAP
-        frame = Bbox.from_bounds(x, y, scale * widths[column], height)
-        to_page = Affine2D().translate(-extents[column][0], -bottom).scale(scale).translate(x, y)
-        panels[row, column] = Panel(axes, frame, to_page + axes.transData, scale)
+        panels[row, column] = panel_at(axes, (*extents[column][:2], bottom, top), (x, y), scale)
     return PanelGrid(figure, panels, scale)
+
+
+def page(width, height):
+    """(figure, axes over all of it in millimetres)."""
+    figure = Figure(figsize=(width * MM, height * MM))
+    axes = figure.add_axes((0, 0, 1, 1), xlim=(0, width), ylim=(0, height))
+    axes.set_axis_off()
+    return figure, axes
+
+
+def panel_at(axes, extent, corner, scale):
+    """The panel of an extent (x0, x1, y0, y1) [m] whose lower left corner lies at `corner` [mm] of a page."""
+    x0, x1, y0, y1 = extent
+    frame = Bbox.from_bounds(*corner, scale * (x1 - x0), scale * (y1 - y0))
+    to_page = Affine2D().translate(-x0, -y0).scale(scale).translate(*corner)
+    return Panel(axes, frame, to_page + axes.transData, scale)

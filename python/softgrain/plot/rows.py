@@ -38,7 +38,13 @@ class Pressure:
         self.range = colours.range_of(np.concatenate(known))
 
     def draw(self, panel, index):
-        surface = self.surfaces[index]
+        self._fill(panel, self.surfaces[index])
+
+    def draw_snapshot(self, panel, snapshot):
+        """One that need not be among those that the range was made of."""
+        self._fill(panel, self._surface(snapshot))
+
+    def _fill(self, panel, surface):
         unknown = np.isnan(surface.values).all()
         draw_surface(panel, surface, PALE if unknown else self.range.rgb(surface.values))
 
@@ -75,12 +81,12 @@ class Forces:
         draw_surface(panel, picture.bodies(snapshot), PALE)
         draw_chains(panel, picture.chains(snapshot, self.scale), colours.CHAINS)
 
-    def draw_key(self, grid, row):
+    def draw_key(self, grid, row, colour=colours.CHAINS):
         axes = grid.add_key_axes(row, width=14, height=0.7)
         axes.set_axis_off()
         force = float(f"{self.scale.force / 2:.0e}")  # one digit
         width = self.scale.width * force / self.scale.force * grid.scale / POINT
-        line = Line2D([], [], color=colours.CHAINS, lw=width, alpha=force / self.scale.force, solid_capstyle="butt")
+        line = Line2D([], [], color=colour, lw=width, alpha=force / self.scale.force, solid_capstyle="butt")
         axes.legend([line], [f"{force:g} N/m"], loc="center left", borderaxespad=0, handlelength=1, handletextpad=0.4)
 
 

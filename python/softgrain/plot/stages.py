@@ -22,7 +22,7 @@ def choose_stages(run, times):
     if len(chosen) < min(3, times.size):
         evenly = np.linspace(0, times.size - 1, min(MOST_STAGES, times.size))
         chosen = set(evenly.round().astype(int).tolist())
-    return [_stage(run.series, snapshot, times[snapshot]) for snapshot in sorted(chosen)]
+    return [stage_at(run.series, snapshot, times[snapshot]) for snapshot in sorted(chosen)]
 
 
 def _snapshots_of_moments(series, times):
@@ -38,7 +38,8 @@ def _snapshots_of_moments(series, times):
     return chosen
 
 
-def _stage(series, snapshot, time):
+def stage_at(series, snapshot, time):
+    """Strain and stress at the time of a snapshot, between the rows of the series."""
     def now(column):
         known = {"time", column} <= series.keys()
         return float(np.interp(time, series["time"], series[column])) if known else None

@@ -4,9 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "softgrain/bpm/primary_pressures.hpp"
 #include "softgrain/core/error.hpp"
-#include "softgrain/geometry/polygon.hpp"
 #include "softgrain/geometry/support.hpp"
 #include "softgrain/observe/clusters.hpp"
 #include "softgrain/rigid/contact_state.hpp"
@@ -46,6 +44,7 @@ BondedGrains::BondedGrains(BondedGrainsSetup setup)
     : grain_radius_(std::move(setup.grain_radius)),
       density_(setup.density),
       sigma_I_(setup.sigma_I),
+      gravity_(setup.gravity),
       friction_(setup.friction),
       attraction_(std::move(setup.laws)),
       dynamics_(std::move(setup.particles), {}, setup.options, setup.skin),
@@ -54,7 +53,8 @@ BondedGrains::BondedGrains(BondedGrainsSetup setup)
   set_reference(dynamics_.reference, dynamics_.particles);
   dynamics_.rebuild_contacts();
   attraction_.update(dynamics_.particles, dynamics_.reference);
-  work_.energy_start = attraction_.energy(dynamics_.particles);
+  work_.height_start = energy_of_height();
+  work_.energy_start = attraction_.energy(dynamics_.particles) + work_.height_start;
 }
 
 StepReport BondedGrains::step(Box<2>& box, double dt) {
@@ -68,6 +68,8 @@ StepReport BondedGrains::step(Box<2>& box, double dt) {
       [&](const RigidParticles<2>& particles, std::span<Vec<2>> force) {
         attraction_.update(particles, dynamics_.reference);
         attraction_.add_forces(particles, force);
+        if (gravity_ == Vec<2>{}) return;
+        for (int i = 0; i < particles.size(); ++i) force[i] += particles.mass[i] * gravity_;
       },
       dt);
   report.residual_limit = dynamics_.options.solver.worst_factor * dynamics_.options.solver.tolerance;
@@ -145,7 +147,15 @@ Energies BondedGrains::energies() const {
           .dissipation = work_.dissipation,
           .contact = work_.between,
           .friction = work_.friction,
-          .error = work_.walls - kinetic - (attraction - work_.energy_start) - work_.dissipation};
+          .error = work_.walls - kinetic - (attraction + energy_of_height() - work_.energy_start) -
+                   work_.dissipation};
+}
+
+double BondedGrains::energy_of_height() const {
+  double energy = 0;
+  for (int i = 0; i < dynamics_.particles.size(); ++i)
+    energy -= dynamics_.particles.mass[i] * dot(gravity_, dynamics_.particles.position[i]);
+  return energy;
 }
 
 int BondedGrains::clusters() const {
@@ -173,6 +183,7 @@ Numbers BondedGrains::numbers(const Box<2>& box) const {
                   {"attraction_energy", attraction_.energy(particles)},
                   {"dissipation_rearrangement", work_.dissipation - work_.between}};
   if (box.closed()) numbers.emplace_back("solid_fraction", solid_fraction(box));
+  if (!(gravity_ == Vec<2>{})) numbers.emplace_back("gravity_work", work_.height_start - energy_of_height());
   return numbers;
 }
 
@@ -191,54 +202,6 @@ std::vector<Vec<2>> BondedGrains::centres() const {
   }
   for (std::size_t g = 0; g < centre.size(); ++g) centre[g] *= 1 / mass[g];
   return centre;
-}
-
-/// Outlines and grains of a box, primaries and their contacts always.
-Scene BondedGrains::scene(const Box<2>& box) const {
-  const auto& particles = dynamics_.particles;
-  const auto& contacts = dynamics_.contacts;
-  const int n = particles.size();
-  std::vector<double> coordination(n, 0), force;
-  std::vector<std::int64_t> pairs;
-  for (int c = 0; c < contacts.size(); ++c) {
-    if (!(contacts.impulse[c][0] > 0)) continue;
-    const int a = contacts.body_a[c], b = contacts.body_b[c];
-    ++coordination[a];
-    if (b < n) ++coordination[b];
-    pairs.insert(pairs.end(), {a, b});  // from n on: walls
-    force.push_back(contacts.impulse[c][0] / impulse_time_);
-  }
-  Scene scene;
-  scene.particles["position"] = to_array(particles.position);
-  scene.particles["velocity"] = to_array(bodies().velocity);
-  scene.particles["radius"] = {1, particles.radius};
-  scene.particles["pressure"] = {1, primary_pressures(dynamics_, attraction_, grain_radius_, impulse_time_)};
-  scene.particles["coordination"] = {1, std::move(coordination)};
-  scene.contacts["pair"] = {2, std::move(pairs)};
-  scene.contacts["force"] = {1, std::move(force)};
-  if (!box.closed()) return scene;
-  scene.particles["grain"] = {1, std::vector<std::int64_t>(particles.grain.begin(), particles.grain.end())};
-  const Outlines all = outlines();
-  std::vector<std::int64_t> grain_of_vertex;
-  for (std::size_t g = 0; g + 1 < all.begin.size(); ++g)
-    grain_of_vertex.insert(grain_of_vertex.end(), all.begin[g + 1] - all.begin[g],
-                           static_cast<std::int64_t>(g));
-  scene.outlines["position"] = to_array(all.vertex);
-  scene.outlines["grain"] = {1, std::move(grain_of_vertex)};
-  return scene;
-}
-
-std::vector<GrainView> BondedGrains::grains() const {
-  const auto& particles = dynamics_.particles;
-  std::vector<GrainView> views;
-  for (int i = 0; i < particles.size(); ++i) {  // the primaries of a grain lie one after the other
-    if (particles.grain[i] == static_cast<int>(views.size()))
-      views.push_back({.position = {.begin = particles.position[i].c.data()},
-                       .velocity = {.begin = particles.velocity[i].c.data()},
-                       .outline = {}});
-    views.back().velocity.rows = ++views.back().position.rows;
-  }
-  return views;
 }
 
 /// Grains as stiff as their bonds, ten times sigma_I.
@@ -277,8 +240,10 @@ void BondedGrains::visit(StateVisitor& visit) {
   visit({"work_dissipated_between", "J/m", Owner::run, Role::sum, "of it between grains and at walls"},
         work_.between);
   visit({"work_dissipated_sliding", "J/m", Owner::run, Role::sum, "of that by sliding"}, work_.friction);
-  visit({"energy_start", "J/m", Owner::run, Role::sum, "attraction and motion before the first step"},
+  visit({"energy_start", "J/m", Owner::run, Role::sum, "potential energies before the first step"},
         work_.energy_start);
+  if (!(gravity_ == Vec<2>{}))
+    visit({"height_start", "J/m", Owner::run, Role::sum, "of them that of gravity"}, work_.height_start);
   // the lists are a function of their reference, so they come back in the same order
   if (visit.reads()) {
     restore_reference(reference, particles, std::move(reference.position), std::move(reference.between),

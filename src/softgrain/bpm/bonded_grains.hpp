@@ -36,6 +36,7 @@ struct BondedGrainsSetup {
   double skin = 0;     ///< of the lists of pairs [m]
   double density = 0;  ///< of the grains [kg/m^3]
   double sigma_I = 0;  ///< F0/<a0>, the same in all grains [Pa]
+  Vec<2> gravity{};    ///< [m/s^2]
 };
 
 /// The bonded-particle model: a grain is an aggregate of rigid primaries that attract each other and touch by
@@ -81,14 +82,17 @@ class BondedGrains final : public Model {
   struct Work {
     double walls = 0, dissipation = 0;
     double between = 0, friction = 0;  // of the dissipation: between grains; by sliding there
-    double energy_start = 0;           // kinetic + attraction before the first step
+    double energy_start = 0;           // potential energies before the first step
+    double height_start = 0;           // of them that of gravity
   };
   void add_work();
   double solid_fraction(const Box<2>& box) const;  // area of the primaries over that of the box
   int clusters() const;
+  double energy_of_height() const;  // -sum m g . x [J/m]
 
   std::vector<double> grain_radius_;
   double density_ = 0, sigma_I_ = 0;
+  Vec<2> gravity_{};
   FrictionOfPrimaries friction_;
   AttractionForces attraction_;
   RigidDynamics<2> dynamics_;

@@ -84,6 +84,7 @@ PlacedModel bonded_grains_of(const Case& c) {
       .inside = c.bpm.inner_friction, .between = c.contact.friction, .wall = c.contact.wall_friction};
   setup.options = rigid_step_options(c);
   setup.density = c.grain.density;
+  setup.gravity = gravity_of(c);
   Box<2> box(setup.particles.walls);
   box.cell = setup.particles.cell;
   return {std::make_unique<BondedGrains>(std::move(setup)), std::move(box), dt};

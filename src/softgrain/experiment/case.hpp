@@ -153,7 +153,8 @@ struct Case {
 
   struct Box {
     BoxEnd x = BoxEnd::walls, y = BoxEnd::walls;
-    double width = 0, height = 0;  ///< of placed grains [m]; 0: as far as the grains reach
+    double width = 0, height = 0;         ///< of placed grains [m]; 0: as far as the grains reach
+    double gravity_x = 0, gravity_y = 0;  ///< [m/s^2]
   } box;
 
   struct Output {
@@ -170,6 +171,9 @@ inline bool is_in_a_box(const Case& c) { return c.experiment.loading != LoadingP
 inline std::array<bool, 2> repeats_of(const Case& c) {
   if (!is_in_a_box(c)) return {};
   return {c.box.x == BoxEnd::periodic, c.box.y == BoxEnd::periodic};
+}
+inline Vec<2> gravity_of(const Case& c) {
+  return is_in_a_box(c) ? Vec<2>{c.box.gravity_x, c.box.gravity_y} : Vec<2>{};
 }
 inline bool is_isotropic(const Case& c) { return c.experiment.loading == LoadingPath::isotropic; }
 

@@ -107,6 +107,7 @@ PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
                                 .pair_friction = pair_friction_of(c),
+                                .gravity = gravity_of(c),
                                 .damping = c.mpm.damping};
   ImplicitDynamics dynamics(std::move(grains), box, options);
   return {std::make_unique<ElasticGrains<ImplicitDynamics>>(std::move(dynamics)), std::move(box), dt};
@@ -118,6 +119,7 @@ PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box) {
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
                                 .pair_friction = pair_friction_of(c),
+                                .gravity = gravity_of(c),
                                 .damping = c.mpm.damping};
   ExplicitDynamics dynamics(std::move(grains), box, options);
   return {std::make_unique<ElasticGrains<ExplicitDynamics>>(std::move(dynamics)), std::move(box), dt};

@@ -1,6 +1,8 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "softgrain/math/tensor.hpp"
 
@@ -37,9 +39,9 @@ struct PeriodicCell {
   /// The image n of b that is nearest to a, for d = b - a [m]: right where |d + H n| is below a third of the
   /// cell.
   Image nearest(const Vec<Dim>& d) const {
-    Image n{};
-    if (!any()) return n;
+    if (is_within(d)) return {};
     const Vec<Dim> share = inverse(edges) * d;
+    Image n{};
     for (int k = 0; k < Dim; ++k)
       if (repeats[static_cast<std::size_t>(k)])
         n[static_cast<std::size_t>(k)] = -static_cast<int>(std::lround(share[k]));
@@ -68,6 +70,14 @@ struct PeriodicCell {
   }
 
  private:
+  /// Is d so short that no image is nearer? No lattice vector is shorter than the shortest edge.
+  bool is_within(const Vec<Dim>& d) const {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < Dim; ++k)
+      if (repeats[static_cast<std::size_t>(k)]) shortest = std::min(shortest, edges(k, k));
+    return dot(d, d) < 0.16 * shortest * shortest;
+  }
+
   static Vec<Dim> as_vector(const Image& n) {
     Vec<Dim> v;
     for (int k = 0; k < Dim; ++k) v[k] = n[static_cast<std::size_t>(k)];

@@ -111,6 +111,7 @@ Numbers ElasticGrains<Dynamics>::numbers(const Box<2>& box) const {
     numbers.emplace_back("plastic_strain_max", strain.largest);
     numbers.emplace_back("yielding", dynamics_.last_flow.share);
   }
+  if (!(dynamics_.options.gravity == Vec<2>{})) numbers.emplace_back("gravity_work", dynamics_.work.gravity);
   if (!box.closed()) {
     numbers.emplace_back("area_ratio", outlines().area / grains.undeformed_area());
   }

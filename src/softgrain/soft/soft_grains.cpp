@@ -159,15 +159,19 @@ int SoftGrains::runaway_grain(double dt) const {
   return -1;
 }
 
-Vec<2, Wide> affine_velocity(const SoftGrains& grains, const GrainBatch& batch, const Mat<2>& L) {
+Vec<2, Wide> centre_of_mass(const SoftGrains& grains, const GrainBatch& batch, const WideVectors& x) {
   Wide mass = 0.0;
-  Vec<2, Wide> x{};
+  Vec<2, Wide> first{};
   for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
     const Wide m = grains.node_mass(batch, i);
     mass += m;
-    x += m * batch.position[i];
+    first += m * x[i];
   }
-  x = (1.0 / mass) * x;
+  return (1.0 / mass) * first;
+}
+
+Vec<2, Wide> affine_velocity(const SoftGrains& grains, const GrainBatch& batch, const Mat<2>& L) {
+  const Vec<2, Wide> x = centre_of_mass(grains, batch, batch.position);
   Vec<2, Wide> v{L(0, 0) * x[0] + L(0, 1) * x[1], L(1, 0) * x[0] + L(1, 1) * x[1]};
   for (int lane = 0; lane < Wide::size; ++lane)
     if (batch.grain[lane] < 0)

@@ -129,6 +129,9 @@ class SoftGrains {
   std::vector<int> outline_begin_, grain_of_vertex_;
 };
 
+/// Centre of mass of the grains of a batch at x [m].
+Vec<2, Wide> centre_of_mass(const SoftGrains& grains, const GrainBatch& batch, const WideVectors& x);
+
 /// L x_c of each grain of a batch, x_c its centre of mass [m/s]; 0 in lanes without a grain.
 Vec<2, Wide> affine_velocity(const SoftGrains& grains, const GrainBatch& batch, const Mat<2>& L);
 

@@ -70,10 +70,10 @@ Bodies nodes_of(const SoftGrains& grains) {
 
 std::vector<Vec<2>> centres_of(const SoftGrains& grains) {
   std::vector<Vec<2>> centre(grains.size());
-  for (int g = 0; g < grains.size(); ++g) {
-    const auto [batch, lane] = grains.batch_of(g);
-    for (int i = 0; i < grains.topology(g).grid.nodes(); ++i)
-      centre[g] += (grains.node_mass(*batch, i)[lane] / grains.mass(g)) * grains.node_position(g, i);
+  for (const GrainBatch& batch : grains.batches) {
+    const Vec<2, Wide> x = centre_of_mass(grains, batch, batch.position);
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+      centre[batch.grain[lane]] = {x[0][lane], x[1][lane]};
   }
   return centre;
 }

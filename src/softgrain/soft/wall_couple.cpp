@@ -23,17 +23,6 @@ std::vector<Wide> grains_on_smooth_walls_alone(const SoftGrains& grains,
   return alone;
 }
 
-Vec<2, Wide> centre_of_mass(const SoftGrains& grains, const GrainBatch& batch, const WideVectors& x) {
-  Wide mass = 0.0;
-  Vec<2, Wide> first{};
-  for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
-    const Wide m = grains.node_mass(batch, i);
-    mass += m;
-    first += m * x[i];
-  }
-  return (1.0 / mass) * first;
-}
-
 namespace {
 
 /// Sum of P and of x x P of each grain, about the origin, by walls.

@@ -18,9 +18,6 @@ std::vector<Wide> grains_on_smooth_walls_alone(const SoftGrains& grains,
                                                std::span<const OutlineContact> contacts,
                                                const FrictionByKind& friction);
 
-/// Centre of mass of the grains of a batch at x [m].
-Vec<2, Wide> centre_of_mass(const SoftGrains& grains, const GrainBatch& batch, const WideVectors& x);
-
 /// Gives the grains whose lanes in `alone` are 1 the rotation that takes back the angular momentum that
 /// `impulse` gave them about their centres. outline: (outline vertices) where they are [m].
 /// Returns the kinetic energy that this gives [J/m].

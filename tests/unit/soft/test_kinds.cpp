@@ -65,7 +65,7 @@ TEST_CASE("the stable step of a mixture is that of the kind with the fastest wav
   CHECK(longest(row_of_grains(4)) == doctest::Approx(step_of(1, longest)).epsilon(1e-12));
 }
 
-TEST_CASE("named pairs have their own friction, whichever side comes first; others the common one") {
+TEST_CASE("named pairs have their own friction, whichever side comes first, others the common one") {
   const std::vector<PairFriction> named{{0, 1, 0.5}, {1, PairFriction::wall, 0.7}};
   const FrictionByKind friction(2, 0.1, 0.2, named);
   CHECK(friction.between(0, 0) == 0.1);

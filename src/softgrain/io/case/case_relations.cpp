@@ -169,6 +169,10 @@ std::string box_unfit(const Case& c) {
   const auto repeats = repeats_of(c);
   if (repeats[1] && !repeats[0])
     return "box.y \"periodic\" with walls in x: turn the box, so that box.x is \"periodic\"";
+  if (repeats[1] && !(gravity_of(c) == Vec<2>{}))
+    return "gravity lets a cell that is periodic along both axes fall for ever: box.gravity_x and gravity_y "
+           "need "
+           "walls in y";
   if (scope::shearing.covers(c) && !repeats[1])
     return "experiment.loading \"shear\" shears a cell: it needs box.x and box.y \"periodic\"";
   if (scope::is_path(c, LoadingPath::die) && (repeats[0] || repeats[1]))
@@ -249,7 +253,7 @@ const std::vector<Relation>& case_relations() {
       {{"experiment.loading", "loading.confining_stress", "loading.max_stress", "loading.hold",
         "loading.shear_rate"},
        path_incomplete},
-      {{"experiment.loading", "box.x", "box.y"}, box_unfit},
+      {{"experiment.loading", "box.x", "box.y", "box.gravity_x", "box.gravity_y"}, box_unfit},
   };
   return relations;
 }

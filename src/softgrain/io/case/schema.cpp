@@ -161,6 +161,8 @@ std::vector<Key> all_keys() {
           "the grains in their places, [x, y, radius, angle] of each in m and rad, and the number of its kind but 0: what a run writes for sample.file", placed),
       KEY(box.x, "", its_words(), "what ends the box along x: walls, or its own image", in_a_box),
       KEY(box.y, "", its_words(), "the same along y; periodic only if x is", in_a_box),
+      KEY(box.gravity_x, "m/s^2", anything(), "acceleration of gravity along x", in_a_box),
+      KEY(box.gravity_y, "m/s^2", anything(), "the same along y: -9.81 m/s^2 pulls down", in_a_box),
       KEY(box.width, "mm", at_least(0), "of the box of placed grains; auto: from the first to the last point of all grains", placed, "auto"),
       KEY(box.height, "mm", at_least(0), "of the box of placed grains; auto: from the lowest to the highest point of all grains", placed, "auto"),
 

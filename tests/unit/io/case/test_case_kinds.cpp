@@ -55,7 +55,7 @@ Case read(const std::string& text, const std::vector<std::string>& sets = {}) {
 
 }  // namespace
 
-TEST_CASE("each of several kinds has its law, density, sizes and number; what is common stands outside") {
+TEST_CASE("each of several kinds has its law, density, sizes and number, and what is common stands outside") {
   const Case c = read(mixture);
   REQUIRE(c.kinds.size() == 2);
   const auto& rubber = c.kinds[0];

@@ -189,3 +189,46 @@ TEST_CASE("a short form says what it needs, and keys of other paths are without 
       "[loading]\nmax_strain = 0.2\n[[stage]]\nyy = { velocity = 1 }\nuntil.strain = 0.1\n", "case.toml");
   CHECK(stages.without_effect == std::vector<std::string>{"loading.max_strain"});
 }
+
+TEST_CASE("a cell takes shear, a box with walls takes single walls, and each says what the other has") {
+  const std::string periodic = "[box]\nx = 'periodic'\ny = 'periodic'\n";
+  const Case read = parse_case(periodic + R"(
+[[stage]]
+xy = { rate = "2 1/s" }
+yy = { stress = "0.1 MPa" }
+until = { strain_xy = 2.5 }
+[[stage]]
+xy = { stress = "-20 kPa" }
+until = { stress_xy = "-10 kPa", time = "1 ms" }
+)",
+                               "case.toml");
+  CHECK(read.box.x == BoxEnd::periodic);
+  REQUIRE(read.stages.size() == 2);
+  CHECK(read.stages[0].drives.back() == Drive{.part = Part::xy, .control = Control::rate, .value = 2});
+  CHECK(read.stages[0].until.strain[2] == 2.5);
+  CHECK(read.stages[1].drives.front().value == -2e4);
+  CHECK(read.stages[1].until.stress[static_cast<std::size_t>(Part::xy)] == -1e4);
+  const Case again = parse_case(resolved_case_text(read), "case.toml");
+  CHECK(again.box.y == BoxEnd::periodic);
+  CHECK(again.stages[0].drives == read.stages[0].drives);
+  CHECK(again.stages[1].until == read.stages[1].until);
+
+  const std::string shear = "[[stage]]\nxy = { rate = 1 }\nuntil = { strain_xy = 1 }\n";
+  CHECK(mentions(refusal(shear), "case.toml:1:1: error: [[stage]]: xy shears a cell"));
+  CHECK(mentions(refusal("[box]\nx = 'periodic'\n" + shear), "box.x and box.y \"periodic\""));
+  CHECK(mentions(refusal(periodic + "[[stage]]\ntop = { rate = 1 }\nuntil = { strain = 1 }\n"),
+                 "box.y is \"periodic\", there is no top wall: write yy"));
+  CHECK(mentions(refusal(periodic + "[[stage]]\nyy = { rate = 1 }\nuntil = { stress_left = 1 }\n"),
+                 "box.x is \"periodic\", there is no left wall: write xx"));
+  CHECK(mentions(refusal("[experiment]\nloading = 'compaction'\n[box]\ny = 'periodic'\n"), "turn the box"));
+  CHECK(
+      mentions(refusal("[experiment]\nloading = 'shear'\n[loading]\nconfining_stress = 1\nshear_rate = 1\n"),
+               "it needs box.x and box.y \"periodic\""));
+  CHECK(
+      mentions(refusal("[experiment]\nloading = 'shear'\n" + periodic + "[loading]\nconfining_stress = 1\n"),
+               "needs loading.shear_rate > 0"));
+  CHECK(mentions(refusal("[experiment]\nloading = 'die'\n" + periodic + "[loading]\nmax_stress = 1\n"),
+                 "\"die\" needs walls"));
+  CHECK(mentions(refusal(periodic + "[[stage]]\nxy = { velocity = 1 }\nuntil = { time = 1 }\n"),
+                 "unknown key 'stage.xy.velocity'"));
+}

@@ -1,0 +1,57 @@
+"""python3 -m softgrain.movie RUN -o FILE: a run as a film."""
+
+import shutil
+import sys
+from pathlib import Path
+
+import softgrain
+
+from ..options import parse
+from ..plot.style import provenance, style
+from . import Film, encode
+
+USAGE_ERROR, IO_ERROR = 2, 4  # exit codes, those of the program `softgrain`
+DURATION = 10  # of a film that says nothing else [s]
+SLOWEST, FASTEST = 5, 30  # frames a second
+WIDTHS = {".mp4": 1280, ".gif": 800, "": 1280}  # [px]
+
+
+def make(options):
+    """Writes the film; returns its path."""
+    path = Path(options.output)
+    suffix = path.suffix.lower()
+    if suffix not in WIDTHS:
+        raise ValueError(f"--output {path}: the name must end in .mp4 or .gif; one without an ending is a folder of PNG files")
+    run = softgrain.open(options.run)
+    with style():
+        film = Film(run, options.width or WIDTHS[suffix])
+        rate = options.fps or min(FASTEST, max(SLOWEST, len(film) / DURATION))
+        comment = "; ".join(provenance([run]))
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if suffix == ".gif":
+            return encode.write_gif(film, path, rate, comment)
+        if suffix == ".mp4" and shutil.which(encode.FFMPEG):
+            return encode.write_mp4(film, path, rate, comment)
+        if suffix == ".mp4":
+            folder = path.with_suffix("")
+            print(f"softgrain movie: no ffmpeg here (Debian: apt install ffmpeg), so the frames are written as PNG;\n"
+                  f"  ffmpeg -r {rate:g} -i {folder}/{encode.ONE_FRAME.replace('{:05}', '%05d')} -pix_fmt yuv420p {path}\n"
+                  "makes the film of them", file=sys.stderr)
+        return encode.write_png(film, path.with_suffix(""), comment)
+
+
+def main(arguments=None):
+    options = parse("movie", arguments)
+    try:
+        print(make(options))
+    except (ValueError, softgrain.NotRecorded) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return USAGE_ERROR
+    except OSError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return IO_ERROR
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

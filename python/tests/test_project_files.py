@@ -1,0 +1,61 @@
+"""What others read about the project agrees: versions, citations, templates."""
+
+import json
+import re
+import unittest
+from pathlib import Path
+
+import softgrain
+from softgrain.methods.references import ENTRIES
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def text(name):
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+class Files(unittest.TestCase):
+    def test_all_files_tell_the_same_version(self):
+        version = re.search(r"project\(softgrain[^)]*VERSION (\S+)", text("CMakeLists.txt"))[1]
+        self.assertEqual(json.loads(text("codemeta.json"))["version"], version)
+        self.assertEqual(re.search(r"^version: (\S+)", text("CITATION.cff"), re.M)[1], version)
+        self.assertEqual(softgrain.__version__, version)
+
+    def test_every_work_cited_in_the_paper_is_in_its_bibliography_and_no_other(self):
+        cited = set(re.findall(r"@([a-z]+\d{4})", text("paper/paper.md")))
+        self.assertEqual(cited, set(re.findall(r"^@\w+\{(\w+),", text("paper/paper.bib"), re.M)))
+        self.assertEqual(text("paper/paper.bib").count("{"), text("paper/paper.bib").count("}"))
+
+    def test_works_that_both_the_paper_and_methods_cite_have_the_same_title(self):
+        title = re.compile(r"title\s*= \{(.*)\},")
+        entries = re.findall(r"^@\w+\{(\w+),\n(.*?)^\}", text("paper/paper.bib"), re.M | re.S)
+        both = {key: title.search(body)[1] for key, body in entries if key in ENTRIES}
+        self.assertEqual(both, {key: title.search(ENTRIES[key])[1] for key in both})
+        self.assertGreaterEqual(len(both), 3)
+
+    def test_the_paper_has_the_sections_that_joss_asks_for_and_its_length(self):
+        paper = text("paper/paper.md")
+        wanted = ["Summary", "Statement of need", "State of the field", "Software design", "Research impact statement",
+                  "AI usage disclosure", "Acknowledgements", "References"]
+        self.assertEqual(re.findall(r"^# (.*)", paper, re.M), wanted)
+        self.assertTrue(750 <= len(paper.split("---", 2)[2].split()) <= 1750)
+
+    def test_templates_are_forms_with_a_name_and_fields(self):
+        try:
+            import yaml
+        except ModuleNotFoundError:
+            self.skipTest("PyYAML is not here")
+        forms = sorted((ROOT / ".github/ISSUE_TEMPLATE").glob("*.yml"))
+        self.assertEqual([form.stem for form in forms], ["bug", "config", "question", "wish"])
+        for form in forms:
+            content = yaml.safe_load(form.read_text())
+            if form.stem != "config":
+                self.assertTrue({"name", "description", "body"} <= content.keys())
+                ids = [field["id"] for field in content["body"]]
+                self.assertEqual(len(ids), len(set(ids)))
+                self.assertTrue(all(field["attributes"]["label"] for field in content["body"]))
+
+
+if __name__ == "__main__":
+    unittest.main()

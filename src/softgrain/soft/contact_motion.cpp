@@ -1,0 +1,47 @@
+#include "softgrain/soft/outline_contacts.hpp"
+#include "softgrain/soft/span_curve.hpp"
+
+// What a contact that was found says once its bodies have moved.
+
+namespace softgrain {
+
+Vec<2> relative_displacement(const OutlineContact& contact, const OutlineState& state) {
+  Vec<2> displacement;
+  if (contact.wall >= 0) displacement -= state.dt * state.walls[contact.wall].velocity;
+  contact.for_each_vertex([&](int vertex, double weight) {
+    displacement += weight * (state.position[vertex] - state.start[vertex]);
+  });
+  return displacement -= contact.image_motion;
+}
+
+double gap_now(const OutlineContact& contact, const OutlineState& state) {
+  if (contact.wall >= 0) {
+    Vec<2> apart = -state.walls[contact.wall].point;
+    contact.for_each_vertex([&](int vertex, double weight) { apart += weight * state.position[vertex]; });
+    return dot(apart, contact.normal) + contact.rise;
+  }
+  const Vec<2> x = state.position[contact.vertex] - contact.image;
+  const SpanCurve curve(state.position, contact.master);
+  const double xi = curve.closest_to(x);
+  const Vec<2> t = curve.tangent(xi);
+  return -dot(x - curve.place(xi), perpendicular(t)) / norm(t);
+}
+
+std::vector<Vec<2>> carried_impulses(const SoftGrains& grains, std::span<const OutlineContact> old,
+                                     std::span<const Vec<2>> old_impulse,
+                                     std::span<const OutlineContact> contacts) {
+  std::vector<Vec<2>> impulse(contacts.size());
+  const auto same = [&](const OutlineContact& a, const OutlineContact& b) {
+    if (a.wall >= 0 || b.wall >= 0) return a.wall == b.wall;
+    return grains.grain_of_vertex(a.master[0]) == grains.grain_of_vertex(b.master[0]);
+  };
+  std::size_t first = 0;  // old contact of the same vertex: both lists are sorted by it
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    while (first < old.size() && old[first].vertex < contacts[c].vertex) ++first;
+    for (std::size_t k = first; k < old.size() && old[k].vertex == contacts[c].vertex; ++k)
+      if (old_impulse[k][0] > 0 && same(old[k], contacts[c])) impulse[c] = old_impulse[k];
+  }
+  return impulse;
+}
+
+}  // namespace softgrain
