@@ -53,7 +53,8 @@ Pile press(const std::vector<double>& moduli, double way, int steps) {
   std::vector<double> start;
   for (int g = 0; g < dynamics.grains.size(); ++g) start.push_back(height_of(dynamics.grains, g));
   for (int k = 0; k < steps; ++k) dynamics.step(dt);
-  Pile pile{.top = dynamics.wall_impulse(1)[1] / dt, .bottom = -dynamics.wall_impulse(0)[1] / dt};
+  Pile pile{
+      .top = dynamics.wall_impulse(1)[1] / dt, .bottom = -dynamics.wall_impulse(0)[1] / dt, .approach = {}};
   double below = 0;
   for (int g = 0; g < dynamics.grains.size(); ++g) {
     const double sunk = start[g] - height_of(dynamics.grains, g);
