@@ -85,7 +85,7 @@ TEST_CASE("each of several kinds has its law, density, sizes and number, and wha
 }
 
 TEST_CASE("the resolved case of several kinds reads as the same case") {
-  for (const std::string& set : {"sample.seed=2", "kind.rubber.law.name=yeoh", "mpm.cells=6"}) {
+  for (const std::string set : {"sample.seed=2", "kind.rubber.law.name=yeoh", "mpm.cells=6"}) {
     const std::string text = resolved_case_text(read(mixture, {set}));
     CAPTURE(text);
     const CaseReading again = parse_case_with_notes(text, "case.toml");
