@@ -138,7 +138,7 @@ const std::vector<TableOfKeys>& form_tables() {
       {"kind",
        "A kind of grains, instead of [grain], [sample] and the material's keys of [mpm] or [bpm]. Several "
        "kinds "
-       "(elastic grains in a box) mix in one sample; what [grain], [mpm] and [sample] say then holds for the "
+       "(elastic grains in a box) mix in one sample; what [grain], [mpm] and [sample] say then\nholds for the "
        "kinds that "
        "do not say it themselves."},
       {"pair",

@@ -132,7 +132,7 @@ constexpr std::string_view sample_files =
     "3.1, 1.2, 0.9, 45, copper\n2.0, 2.9, 1.0, 0, copper\n```\n\n"
     "`x`, `y` and `radius` must be there. `angle` turns a grain and is 0 where it is left out. `kind` is the "
     "name of\n"
-    "the `[[kind]]`; of several kinds the column must be there. Lines that begin with `#` are skipped. "
+    "the `[[kind]]`; of several kinds the column must be there.\nLines that begin with `#` are skipped. "
     "Columns stand in any order.\n\n"
     "The box has its corner at (0, 0), and `box.width` and `box.height`. A side that the case leaves out is "
     "that of\n"
