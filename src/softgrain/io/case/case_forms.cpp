@@ -137,12 +137,13 @@ const std::vector<TableOfKeys>& form_tables() {
   static const std::vector<TableOfKeys> tables{
       {"kind",
        "A kind of grains, instead of [grain], [sample] and the material's keys of [mpm] or [bpm]. Several "
-       "kinds "
-       "(elastic grains in a box) mix in one sample; what [grain], [mpm] and [sample] say then\nholds for the "
+       "kinds\n"
+       "(elastic grains in a box) mix in one sample; what [grain], [mpm] and [sample] say then\nholds for "
+       "the "
        "kinds that "
        "do not say it themselves."},
       {"pair",
-       "What acts between two kinds, or a kind and the walls, instead of [contact]; of several kinds "
+       "What acts between two kinds, or a kind and the walls, instead of [contact]; of several kinds\n"
        "contact.friction and "
        "contact.wall_friction are those of the pairs that have no table."},
       {"stage",
