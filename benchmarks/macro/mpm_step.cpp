@@ -36,7 +36,7 @@ struct Packing {
       placed.push_back({shape, grain.radius, grain.centre, grain.angle, {}});
       area += std::numbers::pi * grain.radius * grain.radius;
     }
-    grains = SoftGrains(std::move(placed), grains.law, grains.density);
+    grains = SoftGrains(std::move(placed), grains.law(grains.batches[0]), grains.density(grains.batches[0]));
     side = sample.width;  // square
     walls = {{{0, 0}, {0, 1}, {}},
              {{0, side}, {0, -1}, {0, -speed}},

@@ -65,6 +65,38 @@ TEST_CASE("a run whose stages set friction, tolerance and damping goes on from a
   }
 }
 
+TEST_CASE(
+    "kinds of which one flows and one does not go on from any snapshot, and on any threads, to the bit") {
+  for (const std::string integrator : {"implicit", "explicit"}) {
+    CAPTURE(integrator);
+    const Workshop workshop;
+    workshop.file(
+        "case.toml",
+        "[experiment]\nmodel = 'mpm'\nloading = 'compaction'\n[mpm]\ncells = 4\nintegrator = '" + integrator +
+            "'\n[sample]\npacking_fraction = 0.62\n[contact]\nfriction = 0.2\n[loading]\nwall_velocity = '5 "
+            "m/s'\nmax_strain = 0.3\n[output]\nsamples = 20\nsnapshots = 4\nreport = false\n[[kind]]\nname = "
+            "'rubber'\nnumber = 4\nlaw.young_modulus = '10 MPa'\n[[kind]]\nname = 'lead'\nnumber = "
+            "5\ndensity "
+            "= 4000\nlaw = { name = 'von_mises', young_modulus = '50 MPa', yield_stress = '1 MPa' "
+            "}\n[[pair]]\n"
+            "between = ['lead', 'rubber']\nfriction = 0.5\n");
+    const ProcessResult whole = workshop.softgrain({"run", "case.toml", "-q", "-o", "whole", "-j", "1"});
+    CAPTURE(whole.err);
+    REQUIRE(whole.exit_code == 0);
+    CHECK(workshop.softgrain({"run", "case.toml", "-q", "-o", "on4", "-j", "4"}).exit_code == 0);
+    CHECK(same_runs(workshop, "on4", "whole"));
+    const std::size_t snapshots = workshop.snapshots("whole").size();
+    REQUIRE(snapshots >= 4);
+    for (std::size_t kept = 1; kept < snapshots; ++kept) {
+      const std::string part = "part" + std::to_string(kept);
+      CAPTURE(part);
+      copy_cut_off(workshop, "whole", part, kept);
+      CHECK(workshop.softgrain({"resume", part, "-q", "-j", "3"}).exit_code == 0);
+      CHECK(same_runs(workshop, part, "whole"));
+    }
+  }
+}
+
 TEST_CASE("a run that stops wherever its time is up and goes on, many times, is the run that did not") {
   for (const std::string name : {"diametral-bpm", "compaction-mpm"}) {
     CAPTURE(name);

@@ -19,7 +19,9 @@ namespace {
 Case cyclic_case(GrainModel model) {
   Case c;
   c.experiment = {.loading = LoadingPath::compaction, .model = model};
-  c.sample = {.seed = 3, .grains = 4, .packing_fraction = 0.65};
+  c.sample.seed = 3;
+  c.sample.grains = 4;
+  c.sample.packing_fraction = 0.65;
   c.bpm.primaries = 20;
   c.bpm.library = 1;
   c.bpm.inner_friction = 0.2;

@@ -31,6 +31,9 @@ inline Words tiny_path(const std::string& name) {
     add({"loading.wall_velocity=\"0.05 m/s\"", "loading.hold=\"40 ms\"", "loading.max_strain=0.12"});
   if (name == "relaxation")
     add({"loading.wall_velocity=\"1 m/s\"", "loading.hold=\"1 ms\"", "loading.rest=0"});
+  if (name == "rubber_sand")
+    add({"loading.wall_velocity=\"5 m/s\"", "loading.unload_at=[0.25]", "loading.unload_by=0.05",
+         "loading.max_stress=0"});
   if (name == "jamming")
     add({"sample.grains=9", "loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.15"});
   if (name == "shear")
@@ -79,6 +82,8 @@ inline std::vector<TinyCase> tiny_cases() {
       cases.push_back({name, source, tiny_path(name), 0});
     else if (name == "die" || name == "tablet")
       cases.push_back({name, source, tiny_path(name), 5});
+    else if (name == "rubber_sand")
+      cases.push_back({name, source, tiny_path(name)});
     else if (name == "biaxial" || name == "relaxation" || name == "shear")
       cases.push_back({name, source, tiny_path(name), name == "relaxation" ? 1U : 2U});
     else

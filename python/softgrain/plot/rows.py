@@ -90,6 +90,33 @@ class Forces:
         axes.legend([line], [f"{force:g} N/m"], loc="center left", borderaxespad=0, handlelength=1, handletextpad=0.4)
 
 
+class Kinds:
+    """The grains of a mixture, coloured by kind, in the order of the case."""
+
+    name = "kinds"
+    colours = ("#F0D9A8", "#3B6FA0", "#8C3B2E", "#5C8A4A")
+
+    def __init__(self, snapshots):
+        if "kind" not in snapshots[0].particles:
+            raise NotRecorded("one kind of grains")
+        self.snapshots = snapshots
+        self.kinds = np.unique(snapshots[0].particles["kind"].astype(int))
+
+    def draw(self, panel, index):
+        snapshot = self.snapshots[index]
+        shapes = picture.grains(snapshot, picture.grain_means(snapshot, snapshot.particles["kind"].astype(float)))
+        draw_surface(panel, shapes, [self._colour(kind) for kind in np.rint(shapes.values).astype(int)])
+
+    def _colour(self, kind):
+        return self.colours[kind % len(self.colours)]
+
+    def draw_key(self, grid, row):
+        axes = grid.add_key_axes(row, width=14, height=0.7)
+        axes.set_axis_off()
+        marks = [Line2D([], [], color=self._colour(kind), marker="o", ls="none", ms=4) for kind in self.kinds]
+        axes.legend(marks, [f"kind {kind + 1}" for kind in self.kinds], loc="center left", borderaxespad=0, handletextpad=0.4)
+
+
 class Layers:
     """Particles, or the elastic grains of a packing, coloured by the layer in which they started: how they have flowed."""
 
@@ -146,4 +173,4 @@ class Cells:
     draw_key = _draw_scale_bar
 
 
-ROWS = (Pressure, Forces, Layers, Cells)
+ROWS = (Pressure, Forces, Kinds, Layers, Cells)

@@ -5,6 +5,7 @@
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
+#include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/sample.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/material/any_law.hpp"
@@ -18,6 +19,7 @@ double mean_distance(const Case& c) { return 2 * c.grain.radius * std::sqrt(0.84
 bool flows(const Case& c) { return c.experiment.model == GrainModel::mpm && law_choice(c.mpm.law).flows(); }
 
 double stress_of(const Case& c) {
+  if (!c.kinds.empty()) return least_of_kinds(c, stress_of);
   if (is_in_a_box(c) && c.loading.hold_stress > 0) return c.loading.hold_stress;
   if (is_in_a_box(c) && c.loading.max_stress > 0) return c.loading.max_stress;
   if (const double named = largest_named_stress(c); is_in_a_box(c) && named > 0) return named;
@@ -27,6 +29,7 @@ double stress_of(const Case& c) {
 }
 
 double blow_of(const Case& c) {
+  if (!c.kinds.empty()) return largest_of_kinds(c, blow_of);
   if (!flows(c)) return 0;
   const double c_wave = wave_speed(make_law(c.mpm.law, c.mpm.material), c.grain.density);
   return c.grain.density * c_wave * c.loading.wall_velocity / c.mpm.material.yield_stress;
@@ -35,7 +38,10 @@ double blow_of(const Case& c) {
 /// |d eps/dt| d at the start [m/s].
 double rate_times_diameter(const Case& c) {
   if (!is_in_a_box(c)) return c.loading.wall_velocity;  // v/(2 R) 2 R
-  const double diameter = mean_diameter(diameter_law(c.sample));
+  const double diameter =
+      sum_of_kinds(
+          c, [](const Case& kind) { return kind.sample.grains * mean_diameter(diameter_law(kind.sample)); }) /
+      c.sample.grains;
   return c.loading.wall_velocity / box_height(c) * diameter;
 }
 
@@ -46,7 +52,9 @@ Advice advise(const Case& c) {
   advice.time_step = first_time_step(c);
   advice.longest_step = c.experiment.model == GrainModel::bpm ? critical_bond_step(c) : longest_time_step(c);
   advice.stress = stress_of(c);
-  advice.inertial_number = rate_times_diameter(c) * std::sqrt(c.grain.density / advice.stress);
+  advice.inertial_number =
+      rate_times_diameter(c) *
+      std::sqrt(largest_of_kinds(c, [](const Case& kind) { return kind.grain.density; }) / advice.stress);
   advice.blow = blow_of(c);
   return advice;
 }

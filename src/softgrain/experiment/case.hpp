@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "softgrain/lattice/contact_on.hpp"
@@ -110,21 +111,45 @@ struct Case {
     double step = 0;  ///< dt [s]; 0: the model's own (first_time_step)
   } time;
 
-  struct Sample {
-    std::int64_t seed = 1;
-    int grains = 20;                ///< in a box
-    double packing_fraction = 0.7;  ///< of the undeformed grains in the box at the start
-    double aspect = 1;              ///< width over height of the box at the start
+  /// How the diameters of grains in a box are distributed.
+  struct Sizes {
     SizeLaw sizes = SizeLaw::uniform;
     double smallest_diameter = 1.4e-3,
-           largest_diameter = 2.4e-3;   ///< of grains in a box [m]
-    double median_diameter = 1.8e-3;    ///< of lognormal sizes [m]
-    double deviation = 0.15;            ///< of ln d of lognormal sizes
-    std::vector<double> diameters{};    ///< of a list [m]
-    std::vector<double> shares{};       ///< of the grains' area that each of them has; empty: `numbers`
-    std::vector<double> numbers{};      ///< how many grains of each, in proportion; empty: as many of each
+           largest_diameter = 2.4e-3;  ///< of grains in a box [m]
+    double median_diameter = 1.8e-3;   ///< of lognormal sizes [m]
+    double deviation = 0.15;           ///< of ln d of lognormal sizes
+    std::vector<double> diameters{};   ///< of a list [m]
+    std::vector<double> shares{};      ///< of the grains' area that each of them has; empty: `numbers`
+    std::vector<double> numbers{};     ///< how many grains of each, in proportion; empty: as many of each
+  };
+
+  struct Sample : Sizes {
+    std::int64_t seed = 1;
+    int grains = 20;                    ///< in a box
+    double packing_fraction = 0.7;      ///< of the undeformed grains in the box at the start
+    double aspect = 1;                  ///< width over height of the box at the start
     std::vector<PlacedGrain> placed{};  ///< in their places, instead of random ones; see complete_sample
   } sample;
+
+  /// Of several kinds of grains: what `grain`, `mpm` and `sample` say where there is but one.
+  struct Kind {
+    std::string name;
+    int grains = 0;      ///< in the box
+    double density = 0;  ///< rho [kg/m^3]
+    MaterialLaw law = MaterialLaw::neo_hookean;
+    MaterialParameters material;
+    int cells = 0;
+    Sizes sizes;
+  };
+  std::vector<Kind> kinds{};  ///< none, or at least two (experiment/kinds.hpp)
+
+  /// Friction of two kinds, instead of contact.friction, or of a kind and the walls.
+  struct Pair {
+    static constexpr int wall = -1;
+    int kind = 0, other = wall;  ///< numbers in `kinds`
+    double friction = 0;         ///< mu
+  };
+  std::vector<Pair> pairs{};
 
   struct Box {
     BoxEnd x = BoxEnd::walls, y = BoxEnd::walls;

@@ -21,6 +21,10 @@ Case twin_of(Case c) {
   c.bpm.library = 1;
   c.mpm.cells = std::min(c.mpm.cells, 4);
   c.sample.grains = std::min(c.sample.grains, 8);
+  for (Case::Kind& kind : c.kinds) {
+    kind.cells = std::min(kind.cells, 4);
+    kind.grains = std::min(kind.grains, 4);
+  }
   c.sample.packing_fraction = std::min(c.sample.packing_fraction, 0.2);
   c.sample.aspect = 1;
   c.sample.placed.clear();

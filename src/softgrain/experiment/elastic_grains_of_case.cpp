@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
+#include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/lattice/lattice_grains.hpp"
 #include "softgrain/soft/elastic_grains.hpp"
@@ -21,7 +23,25 @@ constexpr double way_share = 0.01;
 AnyLaw law_of(const Case& c) { return make_law(c.mpm.law, c.mpm.material); }
 
 SoftGrains grains_of(const Case& c, std::vector<GrainPlacement> placed) {
-  return {std::move(placed), law_of(c), c.grain.density};
+  std::vector<GrainMaterial> materials;
+  for (int k = 0; k < kinds_of(c); ++k) {
+    const Case of_kind = case_of_kind(c, k);
+    materials.push_back({law_of(of_kind), of_kind.grain.density});
+  }
+  return {std::move(placed), std::move(materials)};
+}
+
+/// The grid of each kind; kinds of one resolution share it.
+std::vector<std::shared_ptr<const Topology>> shapes_of(const Case& c) {
+  std::map<int, std::shared_ptr<const Topology>> by_cells;
+  std::vector<std::shared_ptr<const Topology>> shapes;
+  for (int k = 0; k < kinds_of(c); ++k) {
+    const int cells = case_of_kind(c, k).mpm.cells;
+    std::shared_ptr<const Topology>& shape = by_cells[cells];
+    if (!shape) shape = std::make_shared<const Topology>(disk_grid(cells));
+    shapes.push_back(shape);
+  }
+  return shapes;
 }
 
 GrainPlacement placement(const std::shared_ptr<const Topology>& shape, const PlacedGrain& grain) {
@@ -29,7 +49,16 @@ GrainPlacement placement(const std::shared_ptr<const Topology>& shape, const Pla
           .radius = grain.radius,
           .centre = grain.centre,
           .angle = grain.angle,
-          .velocity = {}};
+          .velocity = {},
+          .kind = grain.kind};
+}
+
+std::vector<PairFriction> pair_friction_of(const Case& c) {
+  std::vector<PairFriction> friction;
+  for (const Case::Pair& pair : c.pairs)
+    friction.push_back(
+        {pair.kind, pair.other == Case::Pair::wall ? PairFriction::wall : pair.other, pair.friction});
+  return friction;
 }
 
 /// Between walls that meet the circle through its vertices.
@@ -44,9 +73,7 @@ double tolerance_of(const Case& c, const SoftGrains& grains, double height) {
   const double kept = least_kept_stress(c);
   if (kept == 0) return c.mpm.tolerance;
   constexpr double share = 0.01;  // of the stress
-  const double wave = wave_speed(grains.law, grains.density);
-  const double modulus = grains.density * wave * wave;
-  return std::min(c.mpm.tolerance, share * kept / modulus * height / grains.radius(0));
+  return std::min(c.mpm.tolerance, share * kept / grains.largest_wave_modulus() * height / grains.radius(0));
 }
 
 double cell_of(const Case& c) {
@@ -79,6 +106,7 @@ PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double
   const ImplicitOptions options{.tolerance = tolerance_of(c, grains, box.height()),
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
+                                .pair_friction = pair_friction_of(c),
                                 .gravity = gravity_of(c),
                                 .damping = c.mpm.damping};
   ImplicitDynamics dynamics(std::move(grains), box, options);
@@ -90,6 +118,7 @@ PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box) {
   const ExplicitOptions options{.damping_share = damping_share,
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
+                                .pair_friction = pair_friction_of(c),
                                 .gravity = gravity_of(c),
                                 .damping = c.mpm.damping};
   ExplicitDynamics dynamics(std::move(grains), box, options);
@@ -103,10 +132,15 @@ double longest_time_step(const Case& c) {
   if (c.experiment.model != GrainModel::mpm) return no_limit;
   if (is_lattice(c)) return stable_time_step(law_of(c), c.grain.density, cell_of(c), 0.2 * (1 + 1e-9));
   if (c.mpm.integrator != Integrator::symplectic_euler) return no_limit;
-  const double radius = is_in_a_box(c) ? c.sample.smallest_diameter / 2 : c.grain.radius;
-  const auto shape = std::make_shared<const Topology>(disk_grid(c.mpm.cells));
-  return longest_stable_step(grains_of(c, {placement(shape, {.centre = {}, .radius = radius, .angle = 0})}),
-                             damping_share);
+  const auto longest = [](const Case& of_kind) {
+    const double radius = !is_in_a_box(of_kind)           ? of_kind.grain.radius
+                          : of_kind.sample.placed.empty() ? diameter_law(of_kind.sample).least() / 2
+                                                          : of_kind.sample.smallest_diameter / 2;
+    const auto shape = std::make_shared<const Topology>(disk_grid(of_kind.mpm.cells));
+    return longest_stable_step(
+        grains_of(of_kind, {placement(shape, {.centre = {}, .radius = radius, .angle = 0})}), damping_share);
+  };
+  return least_of_kinds(c, longest);
 }
 
 void check_time_step(const Case& c) {
@@ -121,16 +155,16 @@ void check_time_step(const Case& c) {
 PlacedModel elastic_grains_of(const Case& c) {
   check_time_step(c);
   if (is_lattice(c)) return lattice_grain_of(c);
-  const auto shape = std::make_shared<const Topology>(disk_grid(c.mpm.cells));
+  const std::vector<std::shared_ptr<const Topology>> shapes = shapes_of(c);
   std::vector<GrainPlacement> placed;
   Box<2> box;
   if (is_in_a_box(c)) {
     const BoxSample sample = sample_box(c);
-    for (const PlacedGrain& grain : sample.grains) placed.push_back(placement(shape, grain));
+    for (const PlacedGrain& grain : sample.grains) placed.push_back(placement(shapes[grain.kind], grain));
     box = box_of(sample);
   } else {
-    placed.push_back(placement(shape, {.centre = {}, .radius = c.grain.radius, .angle = 0}));
-    box = box_of_grain(c, *shape);
+    placed.push_back(placement(shapes[0], {.centre = {}, .radius = c.grain.radius, .angle = 0}));
+    box = box_of_grain(c, *shapes[0]);
   }
   double smallest = placed.front().radius;
   for (const GrainPlacement& grain : placed) smallest = std::min(smallest, grain.radius);

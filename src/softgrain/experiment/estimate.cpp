@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "softgrain/experiment/bpm_step.hpp"
+#include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/sample.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/material/any_law.hpp"
@@ -30,6 +31,7 @@ double wave_modulus(const Case& c) {
 double grain_area(const Case& c) {
   if (!is_in_a_box(c)) return std::numbers::pi * c.grain.radius * c.grain.radius;
   if (!c.sample.placed.empty()) return c.sample.packing_fraction * c.box.width * c.box.height;
+  if (!c.kinds.empty()) return sum_of_kinds(c, grain_area);
   const double a = c.sample.smallest_diameter, b = c.sample.largest_diameter;
   if (c.sample.sizes == SizeLaw::uniform)  // in the digits that snapshots have always had
     return c.sample.grains * std::numbers::pi / 12 * (a * a + a * b + b * b);
@@ -66,6 +68,7 @@ double first_time_step(const Case& c) {
   if (c.experiment.model == GrainModel::bpm) return c.time.step > 0 ? c.time.step : stable_bond_step(c);
   if (c.time.step > 0) return c.time.step;
   if (is_implicit(c)) return 0.01 * smallest_radius(c) / c.loading.wall_velocity;
+  if (!c.kinds.empty()) return least_of_kinds(c, first_time_step);
   // a share of the time in which a pressure wave crosses a cell; pi R^2 = 3.5 cells^2 h^2
   const double cell = smallest_radius(c) * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;
   return (is_updated_lagrangian(c) ? 0.2 : 0.26) * cell / std::sqrt(wave_modulus(c) / c.grain.density);
@@ -74,7 +77,21 @@ double first_time_step(const Case& c) {
 namespace {
 
 /// Speed of pressure waves in an elastic grain [m/s].
-double wave_speed(const Case& c) { return std::sqrt(wave_modulus(c) / c.grain.density); }
+double wave_speed(const Case& c) {
+  return largest_of_kinds(
+      c, [](const Case& kind) { return std::sqrt(wave_modulus(kind) / kind.grain.density); });
+}
+
+bool remembers(const Case& c) {
+  return largest_of_kinds(
+             c, [](const Case& kind) { return law_choice(kind.mpm.law).remembers() ? 1.0 : 0.0; }) > 0;
+}
+
+/// Of material, of elastic grains.
+double points(const Case& c) {
+  return sum_of_kinds(c,
+                      [](const Case& kind) { return grains(kind) * 14 * kind.mpm.cells * kind.mpm.cells; });
+}
 
 /// CPU time of an implicit step for each point [s]. In a box it grows with s = dt c/R, the wave times of a
 /// grain that the step lasts, more so among many grains, with the root of the cells and where grains are
@@ -101,9 +118,7 @@ double seconds_of_step(const Case& c, const Estimate& e) {
     return e.contacts * sweeps * (c.solver.precision == Precision::single ? 4.1e-9 : 5.5e-9);
   if (is_updated_lagrangian(c)) return e.particles * 1.1e-7;
   const double batches = std::ceil(grains(c) / 8);  // a batch of 8 grains costs the same when it is not full
-  const double flow = !law_choice(c.mpm.law).remembers() ? 1
-                      : is_implicit(c)                   ? flow_factor_implicit
-                                                         : flow_factor_explicit;
+  const double flow = !remembers(c) ? 1 : is_implicit(c) ? flow_factor_implicit : flow_factor_explicit;
   return batches * 8 * e.particles / grains(c) * flow *
          (is_implicit(c) ? implicit_seconds_of_point(c) : 5.5e-9);
 }
@@ -144,6 +159,7 @@ double memory(const Case& c, const Estimate& e) {
 
 double least_energy(const Case& c) {
   constexpr double strain = 1e-3;
+  if (!c.kinds.empty() && c.sample.placed.empty()) return sum_of_kinds(c, least_energy);
   const double v = c.loading.wall_velocity, kinetic = c.grain.density * v * v / 2;
   const bool implicit = c.experiment.model == GrainModel::mpm && is_implicit(c);
   const double elastic = implicit ? wave_modulus(c) * strain * strain / 2 : 0;
@@ -153,10 +169,9 @@ double least_energy(const Case& c) {
 Estimate estimate(const Case& the_case) {
   constexpr double second = 1.0 / 3600;  // [h]
   const bool bpm = the_case.experiment.model == GrainModel::bpm;
-  const double cells = the_case.mpm.cells;
   Estimate result;
-  result.particles = bpm ? primaries(the_case) : grains(the_case) * 14 * cells * cells;
-  result.contacts = bpm ? 2.2 * result.particles : grains(the_case) * 3.3 * cells;
+  result.particles = bpm ? primaries(the_case) : points(the_case);
+  result.contacts = bpm ? 2.2 * result.particles : grains(the_case) * 3.3 * the_case.mpm.cells;
   result.steps = std::round(loading_time(the_case) / first_time_step(the_case));
   result.memory = memory(the_case, result);
   result.disk = disk(the_case, result);

@@ -8,15 +8,18 @@ namespace softgrain {
 
 BoxSample sample_box(const Case& c) {
   if (!c.sample.placed.empty()) return {c.box.width, c.box.height, repeats_of(c), c.sample.placed};
+  std::vector<GrainsOfKind> kinds;
+  for (const Case::Kind& kind : c.kinds) kinds.push_back({kind.grains, diameter_law(kind.sizes)});
   return sample_box({.grains = c.sample.grains,
-                     .sizes = diameter_law(c.sample),
+                     .sizes = kinds.empty() ? diameter_law(c.sample) : DiameterLaw{},
+                     .kinds = std::move(kinds),
                      .packing_fraction = c.sample.packing_fraction,
                      .aspect = c.sample.aspect,
                      .repeats = repeats_of(c),
                      .seed = static_cast<std::uint64_t>(c.sample.seed)});
 }
 
-DiameterLaw diameter_law(const Case::Sample& sample) {
+DiameterLaw diameter_law(const Case::Sizes& sample) {
   DiameterLaw law{.law = sample.sizes,
                   .smallest = sample.smallest_diameter,
                   .largest = sample.largest_diameter,
@@ -41,6 +44,17 @@ Case complete_sample(Case c) {
     const auto [smallest, largest] = std::minmax_element(sample.diameters.begin(), sample.diameters.end());
     sample.smallest_diameter = *smallest;
     sample.largest_diameter = *largest;
+  }
+  if (!c.kinds.empty()) {
+    sample.grains = 0;
+    sample.smallest_diameter = std::numeric_limits<double>::infinity();
+    sample.largest_diameter = 0;
+    for (const Case::Kind& kind : c.kinds) {
+      const DiameterLaw law = diameter_law(kind.sizes);
+      sample.grains += kind.grains;
+      sample.smallest_diameter = std::min(sample.smallest_diameter, law.least());
+      sample.largest_diameter = std::max(sample.largest_diameter, law.greatest());
+    }
   }
   if (sample.placed.empty()) return c;
   constexpr double infinite = std::numeric_limits<double>::infinity();

@@ -9,11 +9,11 @@ namespace softgrain {
 BoxSample sample_box(const Case& the_case);
 
 /// The law of the diameters of a case; shares of area become numbers.
-DiameterLaw diameter_law(const Case::Sample& sample);
+DiameterLaw diameter_law(const Case::Sizes& sizes);
 
 /// What a case says of its sample in more than one place, made one: the smallest and largest diameters follow
-/// a list; for placed grains also their number, the box (where the case leaves it open, their bounding box,
-/// whose corner comes to (0, 0)), packing fraction and aspect.
+/// a list, or with the number of grains all kinds; for placed grains also their number, the box (where the
+/// case leaves it open, their bounding box, whose corner comes to (0, 0)), packing fraction and aspect.
 Case complete_sample(Case the_case);
 
 /// The aggregates of a packing of bonded grains.

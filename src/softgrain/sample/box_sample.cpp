@@ -65,19 +65,44 @@ double push_apart(BoxSample& sample, double clearance, double widest) {
   return worst;
 }
 
+/// With a list of kinds, if only of one, and the number of all grains.
+BoxSampleOptions with_kinds(BoxSampleOptions options) {
+  if (options.kinds.empty()) options.kinds = {{options.grains, options.sizes}};
+  options.grains = 0;
+  for (const GrainsOfKind& kind : options.kinds) options.grains += kind.grains;
+  return options;
+}
+
+double least_diameter(const BoxSampleOptions& options) {
+  double least = options.kinds.front().sizes.least();
+  for (const GrainsOfKind& kind : options.kinds) least = std::min(least, kind.sizes.least());
+  return least;
+}
+
+double greatest_diameter(const BoxSampleOptions& options) {
+  double greatest = 0;
+  for (const GrainsOfKind& kind : options.kinds) greatest = std::max(greatest, kind.sizes.greatest());
+  return greatest;
+}
+
 /// The box and its grains without their places: the draw-th diameters.
 BoxSample drawn(const BoxSampleOptions& options, int draw) {
   BoxSample sample;
   double area = 0;
-  const std::vector<double> diameters =
-      draw_diameters(options.sizes, options.grains, options.seed, Stream::diameters, draw);
-  for (int i = 0; i < options.grains; ++i) {
-    const double diameter = diameters[i];
-    sample.grains.push_back(
-        {.centre = {},
-         .radius = diameter / 2,
-         .angle = 2 * std::numbers::pi * random_uniform(options.seed, Stream::angles, i)});
-    area += std::numbers::pi * diameter * diameter / 4;
+  const std::uint64_t first = static_cast<std::uint64_t>(draw) * options.grains;
+  for (int kind = 0; kind < static_cast<int>(options.kinds.size()); ++kind) {
+    const auto& [grains, sizes] = options.kinds[kind];
+    const std::uint64_t begin = sample.grains.size();
+    for (const double diameter :
+         draw_diameters(sizes, grains, options.seed, Stream::diameters, first + begin)) {
+      const std::uint64_t i = sample.grains.size();
+      sample.grains.push_back(
+          {.centre = {},
+           .radius = diameter / 2,
+           .angle = 2 * std::numbers::pi * random_uniform(options.seed, Stream::angles, i),
+           .kind = kind});
+      area += std::numbers::pi * diameter * diameter / 4;
+    }
   }
   const double side = std::sqrt(area / options.packing_fraction);
   sample.repeats = options.repeats;
@@ -99,9 +124,9 @@ bool place(BoxSample& sample, const BoxSampleOptions& options, double clearance,
     sample.grains[i].centre = {sample.width * random_uniform(options.seed, Stream::places, number),
                                sample.height * random_uniform(options.seed, Stream::places, number + 1)};
   }
-  const double tolerance = 1e-3 * clearance * options.sizes.least();
+  const double tolerance = 1e-3 * clearance * least_diameter(options);
   for (int pass = 0; pass < most_passes; ++pass)
-    if (push_apart(sample, clearance, options.sizes.greatest() / 2) < tolerance) return true;
+    if (push_apart(sample, clearance, greatest_diameter(options) / 2) < tolerance) return true;
   return false;
 }
 
@@ -125,7 +150,7 @@ std::optional<BoxSample> search(const BoxSampleOptions& options, std::span<const
 
 void check(const BoxSampleOptions& options) {
   require(options.grains >= 1, "a sample needs at least one grain, got {}", options.grains);
-  check(options.sizes);
+  for (const GrainsOfKind& kind : options.kinds) check(kind.sizes);
   require(options.packing_fraction > 0 && options.packing_fraction < 0.8,
           "the packing fraction of a random sample must be in (0, 0.8), got {}", options.packing_fraction);
   require(options.aspect > 0, "the aspect of a box must be positive, got {}", options.aspect);
@@ -133,7 +158,8 @@ void check(const BoxSampleOptions& options) {
 
 }  // namespace
 
-BoxSample sample_box(const BoxSampleOptions& options) {
+BoxSample sample_box(const BoxSampleOptions& given) {
+  const BoxSampleOptions options = with_kinds(given);
   check(options);
   BoxSample sample = drawn(options, 0);
   constexpr int most_passes = 100000;
@@ -147,7 +173,8 @@ BoxSample sample_box(const BoxSampleOptions& options) {
       options.grains < 50 ? ", or more grains" : ""));
 }
 
-double largest_packing_fraction(const BoxSampleOptions& options) {
+double largest_packing_fraction(const BoxSampleOptions& given) {
+  const BoxSampleOptions options = with_kinds(given);
   check(options);
   int low = 0, high = static_cast<int>(std::ceil(100 * options.packing_fraction));  // per cent
   while (high - low > 1) {

@@ -17,12 +17,19 @@ struct BoxSample {
   std::vector<PlacedGrain> grains;
 };
 
+/// So many grains of a kind.
+struct GrainsOfKind {
+  int grains = 0;
+  DiameterLaw sizes{};
+};
+
 struct BoxSampleOptions {
   int grains = 300;
   DiameterLaw sizes{};
-  double packing_fraction = 0.7;  ///< sum pi R^2 over the box's area
-  double aspect = 1;              ///< width over height of the box
-  std::array<bool, 2> repeats{};  ///< along x, y
+  std::vector<GrainsOfKind> kinds{};  ///< instead of those two: one kind after the other, their places mixed
+  double packing_fraction = 0.7;      ///< sum pi R^2 over the box's area
+  double aspect = 1;                  ///< width over height of the box
+  std::array<bool, 2> repeats{};      ///< along x, y
   double clearance = 0.02;  ///< free distance round each grain, over its radius, where there is room for it
   std::uint64_t seed = 1;
 };
@@ -32,11 +39,11 @@ struct BoxSampleOptions {
 /// with other diameters. The same seed gives the same bits. Raises UsageError, with the largest fraction that
 /// is found, if none of them works: few grains do not fill 0.7 of every box (two equal ones fill 0.54 of a
 /// square).
-BoxSample sample_box(const BoxSampleOptions& options);
+BoxSample sample_box(const BoxSampleOptions& given);
 
 /// The largest packing fraction, in hundredths, at which sample_box is sure to find places for these grains,
 /// up to that of the options. O(grains), and less than a second for 300.
-double largest_packing_fraction(const BoxSampleOptions& options);
+double largest_packing_fraction(const BoxSampleOptions& given);
 
 /// A box with its corner at (0, 0), with walls or a cell that repeats; walls below and above one grain [m].
 /// Raises UsageError for a cell that a grain might meet twice, and for one that repeats along y alone.

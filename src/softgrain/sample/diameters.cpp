@@ -34,24 +34,6 @@ struct CutNormal {
   }
 };
 
-/// How many grains get each diameter: the whole parts first, the rest by largest remainders.
-std::vector<int> counts_of(const DiameterLaw& law, int grains) {
-  const double sum = std::accumulate(law.numbers.begin(), law.numbers.end(), 0.0);
-  std::vector<int> counts, order;
-  std::vector<double> remainder;
-  int left = grains;
-  for (const double number : law.numbers) {
-    const double exact = grains * (number / sum);
-    counts.push_back(static_cast<int>(exact));
-    remainder.push_back(exact - counts.back());
-    left -= counts.back();
-    order.push_back(static_cast<int>(order.size()));
-  }
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return remainder[a] > remainder[b]; });
-  for (int k = 0; k < left; ++k) ++counts[order[k % order.size()]];
-  return counts;
-}
-
 /// Mean of d^power, power 1 or 2.
 double moment(const DiameterLaw& law, int power) {
   const double a = law.smallest, b = law.largest;
@@ -72,6 +54,23 @@ double moment(const DiameterLaw& law, int power) {
 }
 
 }  // namespace
+
+std::vector<int> counts_in_proportion(const std::vector<double>& proportions, int all) {
+  const double sum = std::accumulate(proportions.begin(), proportions.end(), 0.0);
+  std::vector<int> counts, order;
+  std::vector<double> remainder;
+  int left = all;
+  for (const double proportion : proportions) {
+    const double exact = all * (proportion / sum);
+    counts.push_back(static_cast<int>(exact));
+    remainder.push_back(exact - counts.back());
+    left -= counts.back();
+    order.push_back(static_cast<int>(order.size()));
+  }
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return remainder[a] > remainder[b]; });
+  for (int k = 0; k < left; ++k) ++counts[order[k % order.size()]];
+  return counts;
+}
 
 double DiameterLaw::least() const {
   return law == SizeLaw::list ? *std::min_element(diameters.begin(), diameters.end()) : smallest;
@@ -101,18 +100,17 @@ void check(const DiameterLaw& law) {
 }
 
 std::vector<double> draw_diameters(const DiameterLaw& law, int grains, std::uint64_t seed,
-                                   std::uint32_t stream, int draw) {
+                                   std::uint32_t stream, std::uint64_t first) {
   std::vector<double> diameters;
   if (law.law == SizeLaw::list) {
-    const std::vector<int> counts = counts_of(law, grains);
+    const std::vector<int> counts = counts_in_proportion(law.numbers, grains);
     for (std::size_t k = 0; k < counts.size(); ++k)
       diameters.insert(diameters.end(), counts[k], law.diameters[k]);
     return diameters;
   }
   const CutNormal z(law);
   for (int i = 0; i < grains; ++i) {
-    const std::uint64_t number = i + static_cast<std::uint64_t>(draw) * grains;
-    const double u = random_uniform(seed, stream, number);
+    const double u = random_uniform(seed, stream, first + i);
     const double d = law.law == SizeLaw::uniform ? law.smallest + (law.largest - law.smallest) * u
                                                  : law.median * std::exp(law.deviation * z.quantile(u));
     diameters.push_back(std::clamp(d, law.smallest, law.largest));

@@ -28,12 +28,16 @@ struct DiameterLaw {
 /// that do not enclose the median, a list and proportions of different lengths.
 void check(const DiameterLaw& law);
 
-/// Diameters [m] of so many grains: the draw-th ones, from the numbers of `stream` under `seed`. Uniform and
-/// lognormal: one random number for each grain, through the inverse of the cumulative distribution. List: as
-/// many of each diameter as the proportions say, rounded by largest remainders, in the order of the list,
-/// in every draw the same.
+/// Diameters [m] of so many grains, from the numbers of `stream` under `seed`. Uniform and lognormal: one
+/// random number for each grain, from number `first` on, through the inverse of the cumulative distribution.
+/// List: as many of each diameter as the proportions say, rounded by largest remainders, in the order of the
+/// list, whatever the random numbers.
 std::vector<double> draw_diameters(const DiameterLaw& law, int grains, std::uint64_t seed,
-                                   std::uint32_t stream, int draw);
+                                   std::uint32_t stream, std::uint64_t first);
+
+/// How many of `all` things each sort gets, in these proportions: the whole parts first, what is left by
+/// largest remainders.
+std::vector<int> counts_in_proportion(const std::vector<double>& proportions, int all);
 
 /// Mean of d [m] and of d^2 [m^2].
 double mean_diameter(const DiameterLaw& law);

@@ -8,9 +8,10 @@ struct PlacedGrain {
   Vec<2> centre;      ///< [m]
   double radius = 0;  ///< [m]
   double angle = 0;   ///< [rad] orientation
+  int kind = 0;
 
   friend bool operator==(const PlacedGrain& a, const PlacedGrain& b) {
-    return a.centre.c == b.centre.c && a.radius == b.radius && a.angle == b.angle;
+    return a.centre.c == b.centre.c && a.radius == b.radius && a.angle == b.angle && a.kind == b.kind;
   }
 };
 

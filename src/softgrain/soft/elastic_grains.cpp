@@ -104,7 +104,7 @@ Numbers ElasticGrains<Dynamics>::numbers(const Box<2>& box) const {
   numbers.emplace_back("least_J", least_J(grains));
   numbers.emplace_back("iterations", sums_.steps > 0 ? sums_.iterations / sums_.steps : 0);
   numbers.emplace_back("rejected_steps", sums_.rejected);
-  if (has_history(grains.law)) {
+  if (grains.has_history()) {
     const PlasticStrain strain = plastic_strain(grains);
     numbers.emplace_back("dissipation_plastic", dynamics_.work.flow);
     numbers.emplace_back("plastic_strain", strain.mean);
@@ -128,7 +128,7 @@ SoftView ElasticGrains<Dynamics>::view() const {
 
 template <class Dynamics>
 PressBody ElasticGrains<Dynamics>::press_body(const Box<2>& box, int axis, double dt) const {
-  return critically_damped(density(), wave_speed(dynamics_.grains.law, density()), box.length(axis), dt);
+  return critically_damped(density(), dynamics_.grains.fastest_wave(), box.length(axis), dt);
 }
 
 template <class Dynamics>
@@ -174,7 +174,7 @@ void ElasticGrains<Dynamics>::visit(StateVisitor& visit) {
   visit({"impulse_time", "s", Owner::run, Role::start, "the sub-step over which impulses acted"},
         dynamics_.impulse_time);
   visit_work(dynamics_.work, visit);
-  if (has_history(dynamics_.grains.law)) {
+  if (dynamics_.grains.has_history()) {
     visit({"work_of_flow", "J/m", Owner::run, Role::sum, "dissipated by flow of the material"},
           dynamics_.work.flow);
     visit({"yielding", "", Owner::run, Role::sum, "share of the area that flowed in the last step"},

@@ -27,7 +27,7 @@ class ElasticGrains final : public Model {
   void set(const Settings& settings) override;
   void begin_row() override { sums_.steps = sums_.iterations = 0; }
 
-  double density() const override { return dynamics_.grains.density; }
+  double density() const override { return dynamics_.grains.mean_density(); }
   std::vector<double> radii() const override;
   std::vector<Vec<2>> centres() const override { return centres_of(dynamics_.grains); }
   Bodies bodies() const override { return nodes_of(dynamics_.grains); }

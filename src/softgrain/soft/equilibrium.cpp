@@ -189,7 +189,7 @@ template <class Law>
 
 unsigned internal_force(const SoftGrains& grains, const GrainBatch& batch, WideVectors& force, double dt) {
   force.assign(batch.position.size(), {});
-  return std::visit([&](const auto& law) { return add_forces(law, batch, dt, force); }, grains.law);
+  return std::visit([&](const auto& law) { return add_forces(law, batch, dt, force); }, grains.law(batch));
 }
 
 unsigned internal_force_and_history(const SoftGrains& grains, GrainBatch& batch, WideVectors& force,
@@ -202,7 +202,7 @@ unsigned internal_force_and_history(const SoftGrains& grains, GrainBatch& batch,
         else
           return add_forces(law, batch, dt, force);
       },
-      grains.law);
+      grains.law(batch));
 }
 
 void for_each_cell_stiffness(const SoftGrains& grains, const GrainBatch& batch, double dt,
@@ -217,7 +217,7 @@ void for_each_cell_stiffness(const SoftGrains& grains, const GrainBatch& batch, 
           visit(state.index, K);
         });
       },
-      grains.law);
+      grains.law(batch));
 }
 
 void add_stiffness(const SoftGrains& grains, const GrainBatch& batch, BatchedCholesky& matrix, double dt) {
@@ -237,7 +237,7 @@ Wide elastic_energy(const SoftGrains& grains, const GrainBatch& batch) {
         const LawAtPoints<Law> at(law, batch, 0);
         for_each_cell(law, batch, [&](const CellState& state) { sum += cell_energy(at, state); });
       },
-      grains.law);
+      grains.law(batch));
   return sum * (batch.radius * batch.radius);
 }
 

@@ -41,16 +41,15 @@ ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains,
     : grains(std::move(soft_grains)), box(std::move(box_of_grains)), options(explicit_options) {
   require(grains.size() > 0, "there is no grain");
   require(options.damping >= 0, "damping must be >= 0, got {} 1/s", options.damping);
-  require(options.friction >= 0 && options.wall_friction >= 0, "friction must be >= 0, got {} and {}",
-          options.friction, options.wall_friction);
+  friction_by_kind();  // says what is wrong with it
   smallest_radius_ = grains.radius(0);
   for (int g = 0; g < grains.size(); ++g) {
     mean_radius_ += grains.radius(g) / grains.size();
     smallest_radius_ = std::min(smallest_radius_, grains.radius(g));
     const Topology& shape = grains.topology(g);
     for (int i = shape.grid.outline_begin; i < shape.grid.nodes(); ++i)
-      inverse_mass_.push_back(1 /
-                              (grains.density * shape.node_volume[i] * grains.radius(g) * grains.radius(g)));
+      inverse_mass_.push_back(1 / (grains.material(grains.kind(g)).density * shape.node_volume[i] *
+                                   grains.radius(g) * grains.radius(g)));
   }
   for (auto* of_vertices :
        {&outline_velocity_, &outline_velocity_start_, &outline_.start, &outline_.position})
@@ -114,9 +113,7 @@ void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
   PushedBodies pressed = pressed_walls(box, contacts, impulse, dt);
   system.push(pressed);
   kick(dt);
-  std::vector<double> friction;
-  for (const OutlineContact& c : contacts)
-    friction.push_back(c.wall >= 0 ? options.wall_friction : options.friction);
+  const std::vector<double> friction = friction_by_kind().of(grains, contacts);
   system.apply_impulses(impulse);
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
@@ -125,7 +122,7 @@ void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
   move_presses(box, pressed, dt);
   outline_.walls = box.walls;
   drift_outline(dt);
-  if (has_history(grains.law)) add_flow();
+  if (grains.has_history()) add_flow();
   add_contact_work(dt);
 
   ++report.iterations;
@@ -140,8 +137,7 @@ void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
 
 /// Of grains that frictionless walls alone touch: what they gave in the step before.
 void ExplicitDynamics::take_back_spin() {
-  if (options.wall_friction > 0) return;
-  const std::vector<Wide> alone = grains_on_walls_alone(grains, contacts);
+  const std::vector<Wide> alone = grains_on_smooth_walls_alone(grains, contacts, friction_by_kind());
   if (std::none_of(alone.begin(), alone.end(), [](const Wide& of_batch) { return any(of_batch > 0.0); }))
     return;
   grains.gather_outline(outline_.start);
@@ -193,7 +189,7 @@ void ExplicitDynamics::kick_batch(double dt, const WideVectors& force, GrainBatc
   step.force.assign(force.begin() + outline_begin, force.end());
   step.velocity.assign(batch.velocity.begin() + outline_begin, batch.velocity.end());
   step.internal = step.gravity = step.damping = 0.0;
-  const Wide scale = Wide(dt) / (grains.density * (batch.radius * batch.radius));
+  const Wide scale = Wide(dt) / (grains.density(batch) * (batch.radius * batch.radius));
   for (int i = 0; i < topology.grid.nodes(); ++i) {
     const Vec<2, Wide> v = batch.velocity[i];
     const Wide rate = scale * Wide(1 / topology.node_volume[i]);

@@ -9,6 +9,7 @@
 #include "softgrain/soft/history.hpp"
 #include "softgrain/soft/lumped_contacts.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
+#include "softgrain/soft/pair_friction.hpp"
 #include "softgrain/soft/soft_grains.hpp"
 #include "softgrain/soft/stable_step.hpp"
 
@@ -21,8 +22,9 @@ struct ExplicitOptions {
       .max_sweeps = 200, .tolerance = 4.5e-6, .relaxation = 1.4};  ///< NLGS; in units of mean radius / dt
   double friction = 0;
   double wall_friction = 0;
-  Vec<2> gravity{};    ///< [m/s^2]
-  double damping = 0;  ///< zeta [1/s], see MassDamping
+  std::vector<PairFriction> pair_friction{};  ///< of pairs of kinds, instead of those two
+  Vec<2> gravity{};                           ///< [m/s^2]
+  double damping = 0;                         ///< zeta [1/s], see MassDamping
 };
 
 /// That SoftStepReport::residual has to reach: of the worst contact.
@@ -77,6 +79,9 @@ class ExplicitDynamics {
     }
   };
   Vec<2, Wide> weight(const GrainBatch& batch, int node) const;
+  FrictionByKind friction_by_kind() const {
+    return {grains.kinds(), options.friction, options.wall_friction, options.pair_friction};
+  }
   void look_at_cells(double dt);
   double sub_steps(double dt) const;
   void sub_step(double dt, SoftStepReport& report);

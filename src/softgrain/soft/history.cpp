@@ -48,7 +48,7 @@ std::vector<Wide> undeformed_history(const AnyLaw& law, const Topology& topology
 
 FlowOfStep advance_history(const SoftGrains& grains, GrainBatch& batch, double dt) {
   FlowOfStep sum;
-  with_history(grains.law, [&](const auto& law) { sum = advance(law, batch, dt); });
+  with_history(grains.law(batch), [&](const auto& law) { sum = advance(law, batch, dt); });
   return sum;
 }
 
@@ -65,8 +65,8 @@ FlowOfGrains sum_of(const SoftGrains& grains, std::span<const FlowOfStep> of_bat
 
 PlasticStrain plastic_strain(const SoftGrains& grains) {
   PlasticStrain strain;
-  with_history(grains.law, [&]<class Law>(const Law&) {
-    for (const GrainBatch& batch : grains.batches)
+  for (const GrainBatch& batch : grains.batches)
+    with_history(grains.law(batch), [&]<class Law>(const Law&) {
       for (std::size_t p = 0; p < batch.topology->points.size(); ++p) {
         StateOf<Law> state;
         std::copy_n(&batch.history[state.size() * p], state.size(), state.begin());
@@ -77,13 +77,13 @@ PlasticStrain plastic_strain(const SoftGrains& grains) {
           strain.largest = std::max(strain.largest, alpha[lane]);
         }
       }
-  });
+    });
   strain.mean /= grains.undeformed_area();
   return strain;
 }
 
 void visit_history(SoftGrains& grains, StateVisitor& visit) {
-  if (!has_history(grains.law)) return;
+  if (!grains.has_history()) return;
   std::vector<double> values;
   for (const GrainBatch& batch : grains.batches)
     for (const Wide& number : batch.history)

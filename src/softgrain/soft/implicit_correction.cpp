@@ -15,9 +15,6 @@ constexpr double furthest = 4;
 /// force, in tolerances (docs/decisions/0023).
 constexpr double quasi_static_correction = 8, quasi_static_force = 10;
 
-/// Contact force over rho c^2 R from which on it is the measure of unbalanced ones.
-constexpr double least_force = 1e-3;
-
 /// df . df and df . f of each lane, df = f - f_before.
 std::array<Wide, 2> change_of(const WideVectors& f, const WideVectors& f_before) {
   Wide squares = 0.0, products = 0.0;
@@ -83,8 +80,8 @@ double ImplicitDynamics::largest_correction_of_grains() {
 }
 
 /// What A has more than the tangent, (M (1/t^2 - 1/dt^2) + c p/l) f, summed over a grain: the force that is
-/// not balanced yet, in units of the mean contact force of a grain or of `least_force`, whichever is more.
-/// The largest of all grains.
+/// not balanced yet, in units of the mean contact force of a grain or of the least that counts, whichever is
+/// more. The largest of all grains.
 double ImplicitDynamics::unbalanced_force(std::span<const Vec<2>> contact_force) const {
   const double t = step_of_matrix(outline_.dt), dt = outline_.dt;
   const Wide rate = 1 / (t * t) - 1 / (dt * dt);
@@ -102,19 +99,17 @@ double ImplicitDynamics::unbalanced_force(std::span<const Vec<2>> contact_force)
   });
   double scale = 0;
   for (const Vec<2>& f : contact_force) scale += norm(f) / grains.size();
-  return std::sqrt(*std::max_element(largest.begin(), largest.end())) /
-         std::max(scale, least_contact_force());
+  return std::sqrt(*std::max_element(largest.begin(), largest.end())) / std::max(scale, least_contact_force_);
+}
+
+std::vector<double> ImplicitDynamics::friction_of_contacts() const {
+  return friction_by_kind().of(grains, contacts);
 }
 
 double ImplicitDynamics::mean_contact_force(double dt) const {
   double sum = 0;
   for (const Vec<2>& p : impulse) sum += norm(p);
   return sum / (dt * grains.size());
-}
-
-double ImplicitDynamics::least_contact_force() const {
-  const double wave_speed = smallest_radius_ / wave_time_;
-  return least_force * grains.density * wave_speed * wave_speed * mean_radius_;
 }
 
 /// For each grain by itself and dx its last move:

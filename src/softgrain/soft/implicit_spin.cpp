@@ -18,8 +18,7 @@ Wide dot(std::span<const Vec<2, Wide>> a, std::span<const Vec<2, Wide>> b) {
 /// then is L = L_n. A couple -c q holds them to it (docs/decisions/0034).
 void ImplicitDynamics::hold_spins(double dt) {
   held_.assign(grains.batches.size(), {});
-  if (options.wall_friction > 0) return;
-  const std::vector<Wide> alone = grains_on_walls_alone(grains, contacts);
+  const std::vector<Wide> alone = grains_on_smooth_walls_alone(grains, contacts, friction_by_kind());
   parallel_for(batches(), [&](int b) {
     HeldSpin& held = held_[b];
     if (!any(alone[b] > 0.0)) return;

@@ -37,6 +37,9 @@ constexpr int most_patience = 4;
 /// A step that needs more sub-steps, those taken back included, is not of this motion.
 constexpr int most_sub_steps = 2000;
 
+/// Contact force over rho c^2 R from which on it is the measure of unbalanced ones.
+constexpr double least_force = 1e-3;
+
 /// Sub-steps shorter than this share of the explicit step are not tried.
 constexpr double shortest_step = 1.0 / 64;
 
@@ -46,15 +49,20 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains,
                                    const ImplicitOptions& implicit_options)
     : grains(std::move(soft_grains)), box(std::move(box_of_grains)), options(implicit_options) {
   require(grains.size() > 0, "there is no grain");
-  require(options.friction >= 0 && options.wall_friction >= 0, "friction must be >= 0, got {} and {}",
-          options.friction, options.wall_friction);
+  friction_by_kind();  // says what is wrong with it
   smallest_radius_ = grains.radius(0);
   for (int g = 0; g < grains.size(); ++g) {
     mean_radius_ += grains.radius(g) / grains.size();
     smallest_radius_ = std::min(smallest_radius_, grains.radius(g));
   }
   explicit_step_ = stable_time_step(grains, 1);
-  wave_time_ = smallest_radius_ / wave_speed(grains.law, grains.density);
+  wave_time_ = smallest_radius_ / grains.fastest_wave();
+  for (int k = 0; k < grains.kinds(); ++k) {
+    const auto& [law, density] = grains.material(k);
+    const double speed = smallest_radius_ / (smallest_radius_ / wave_speed(law, density));  // in old digits
+    const double force = least_force * density * speed * speed * mean_radius_;
+    least_contact_force_ = k == 0 ? force : std::min(least_contact_force_, force);
+  }
   for (const GrainBatch& batch : grains.batches) {
     matrix_.emplace_back(batch.topology->pattern);
     const std::size_t width = 2 * batch.topology->grid.outline_nodes();
@@ -117,7 +125,7 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
   Failure failure = factor(dt, proximal, report);
   if (failure == Failure::indefinite_matrix) failure = factor(dt, 4 * proximal, report);
   Imbalance left;
-  const int renewal = has_history(grains.law) ? 1 : refactor_every;  // docs/decisions/0038
+  const int renewal = grains.has_history() ? 1 : refactor_every;  // docs/decisions/0038
   for (int iteration = 1; failure == Failure::none; ++iteration) {
     if ((failure = residual(dt)) != Failure::none) break;
     const bool contacts_solved = solve_contacts(dt, report);
@@ -216,13 +224,6 @@ bool ImplicitDynamics::none_failed(std::span<const int> grain_of_batch) {
   return failed_grain_ < 0;
 }
 
-std::vector<double> ImplicitDynamics::friction_of_contacts() const {
-  std::vector<double> friction;
-  for (const OutlineContact& c : contacts)
-    friction.push_back(c.wall >= 0 ? options.wall_friction : options.friction);
-  return friction;
-}
-
 /// Contacts at the present positions, and their impulses by NLGS with warm start. True if it converged.
 bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   grains.gather_outline(outline_.position);
@@ -235,7 +236,7 @@ bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   system.apply_impulses(impulse);
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
-  const bool floppy = step_of_matrix(dt) < dt && mean_contact_force(dt) < least_contact_force();
+  const bool floppy = step_of_matrix(dt) < dt && mean_contact_force(dt) < least_contact_force_;
   solver.tolerance = (floppy ? floppy_share : contact_share) * options.tolerance;
   const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction_of_contacts(), solver);
   report.sweeps += solved.sweeps;
@@ -255,7 +256,7 @@ double ImplicitDynamics::find_depth() {
 
 /// The history of the points after a step that nothing takes back any more.
 void ImplicitDynamics::flow(double dt) {
-  if (!has_history(grains.law)) return;
+  if (!grains.has_history()) return;
   std::vector<FlowOfStep> flows(grains.batches.size());
   parallel_for(batches(), [&](int b) { flows[b] = advance_history(grains, grains.batches[b], dt); });
   last_flow = sum_of(grains, flows);

@@ -13,6 +13,7 @@
 #include "softgrain/soft/elastic_contacts.hpp"
 #include "softgrain/soft/history.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
+#include "softgrain/soft/pair_friction.hpp"
 #include "softgrain/soft/soft_grains.hpp"
 
 namespace softgrain {
@@ -38,6 +39,7 @@ struct ImplicitOptions {
                        .extrapolated = true};  ///< NLGS, to a quarter of Newton's tolerance
   double friction = 0;                         ///< mu between grains
   double wall_friction = 0;                    ///< mu against walls
+  std::vector<PairFriction> pair_friction{};   ///< of pairs of kinds, instead of those two
   Vec<2> gravity{};                            ///< [m/s^2]
   double damping = 0;                          ///< zeta [1/s], see MassDamping
 };
@@ -137,7 +139,6 @@ class ImplicitDynamics {
   void follow_secant(bool accelerated);
   void follow_momentum(bool first, bool accelerated);
   double mean_contact_force(double dt) const;  // sum of all, over the number of grains [N/m]
-  double least_contact_force() const;          // of a packing that carries something [N/m]
   double find_depth();
   void catch_problem(double dt);
   void flow(double dt);
@@ -151,11 +152,15 @@ class ImplicitDynamics {
   void add_work();
   void take_back();
   [[noreturn]] void give_up(Failure failure, double dt) const;
+  FrictionByKind friction_by_kind() const {
+    return {grains.kinds(), options.friction, options.wall_friction, options.pair_friction};
+  }
   std::vector<double> friction_of_contacts() const;
 
   double mean_radius_ = 0, smallest_radius_ = 0;
-  double explicit_step_ = 0;  // h/c [s]
-  double wave_time_ = 0;      // R/c of the smallest grain [s]
+  double explicit_step_ = 0;        // h/c [s]
+  double wave_time_ = 0;            // R/c of the smallest grain and the fastest waves [s]
+  double least_contact_force_ = 0;  // of a packing that carries something, of the softest kind [N/m]
   OutlineNeighbours neighbours_;
   std::vector<BatchedCholesky> matrix_;
   std::vector<OutlineCompliance> compliance_;

@@ -67,7 +67,7 @@ std::vector<PointState> point_states(const SoftGrains& grains, int grain) {
         for_each_cell(law, *batch,
                       [&](const CellState& cell) { add_point_states(at, cell, Q, lane, states); });
       },
-      grains.law);
+      grains.law(*batch));
   return states;
 }
 

@@ -1,5 +1,6 @@
 #include "softgrain/soft/soft_grains.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "softgrain/core/error.hpp"
@@ -8,30 +9,38 @@
 
 namespace softgrain {
 
-SoftGrains::SoftGrains(std::vector<GrainPlacement> grains, AnyLaw material, double mass_density)
-    : law(material), density(mass_density) {
-  require(density > 0, "the density must be > 0, got {} kg/m^3", density);
+SoftGrains::SoftGrains(std::vector<GrainPlacement> grains, std::vector<GrainMaterial> materials)
+    : materials_(std::move(materials)) {
+  for (const GrainMaterial& material : materials_)
+    require(material.density > 0, "the density must be > 0, got {} kg/m^3", material.density);
   place_.resize(grains.size());
   outline_begin_.push_back(0);
   for (int g = 0; g < static_cast<int>(grains.size()); ++g) {
     const GrainPlacement& placed = grains[g];
     require(placed.radius > 0, "grain {}: the radius must be > 0, got {} m", g, placed.radius);
+    require(placed.kind >= 0 && placed.kind < kinds(), "grain {}: there is no kind {}", g, placed.kind);
     shapes_.push_back(placed.topology);
     radius_.push_back(placed.radius);
     const int vertices = placed.topology->grid.outline_nodes();
     outline_begin_.push_back(outline_begin_.back() + vertices);
     grain_of_vertex_.insert(grain_of_vertex_.end(), vertices, g);
 
-    // the next free lane of a batch of this shape
+    // the next free lane of a batch of this shape and kind
     int b = static_cast<int>(batches.size()) - 1;
-    while (b >= 0 && !(batches[b].topology == placed.topology.get() && batches[b].grain.back() < 0)) --b;
+    while (b >= 0 && !(batches[b].topology == placed.topology.get() && batches[b].kind == placed.kind &&
+                       batches[b].grain.back() < 0))
+      --b;
     if (b < 0) {
       b = static_cast<int>(batches.size());
-      batches.push_back({.topology = placed.topology.get(), .grain = {}, .position = {}, .velocity = {}});
+      batches.push_back({.topology = placed.topology.get(),
+                         .kind = placed.kind,
+                         .grain = {},
+                         .position = {},
+                         .velocity = {}});
       batches[b].grain.fill(-1);
       batches[b].position.resize(placed.topology->grid.nodes());
       batches[b].velocity.resize(placed.topology->grid.nodes());
-      batches[b].history = undeformed_history(law, *placed.topology);
+      batches[b].history = undeformed_history(law(batches[b]), *placed.topology);
     }
     GrainBatch& batch = batches[b];
     int lane = 0;
@@ -55,8 +64,36 @@ SoftGrains::SoftGrains(std::vector<GrainPlacement> grains, AnyLaw material, doub
   }
 }
 
+double SoftGrains::mean_density() const {
+  if (kinds() == 1) return materials_.front().density;  // to the last digit
+  double mass_of_all = 0;
+  for (int g = 0; g < size(); ++g) mass_of_all += mass(g);
+  return mass_of_all / undeformed_area();
+}
+
+bool SoftGrains::has_history() const {
+  return std::any_of(materials_.begin(), materials_.end(),
+                     [](const GrainMaterial& material) { return softgrain::has_history(material.law); });
+}
+
+double SoftGrains::fastest_wave() const {
+  double fastest = 0;
+  for (const GrainMaterial& material : materials_)
+    fastest = std::max(fastest, wave_speed(material.law, material.density));
+  return fastest;
+}
+
+double SoftGrains::largest_wave_modulus() const {
+  double largest = 0;
+  for (const GrainMaterial& material : materials_) {
+    const double wave = wave_speed(material.law, material.density);
+    largest = std::max(largest, material.density * wave * wave);
+  }
+  return largest;
+}
+
 double SoftGrains::mass(int grain) const {
-  return density * shapes_[grain]->area * radius_[grain] * radius_[grain];
+  return materials_[kind(grain)].density * shapes_[grain]->area * radius_[grain] * radius_[grain];
 }
 
 void SoftGrains::gather_outline(std::vector<Vec<2>>& position) const {
@@ -101,7 +138,7 @@ double SoftGrains::kinetic_energy() const {
 
 double SoftGrains::undeformed_area() const {
   double sum = 0;
-  for (int g = 0; g < size(); ++g) sum += mass(g) / density;
+  for (int g = 0; g < size(); ++g) sum += mass(g) / materials_[kind(g)].density;
   return sum;
 }
 

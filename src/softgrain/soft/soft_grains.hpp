@@ -14,10 +14,17 @@ namespace softgrain {
 
 using WideVectors = std::vector<Vec<2, Wide>>;
 
-/// Eight grains of one topology, one in each lane. Lanes without a grain repeat the first one and are not
-/// read.
+/// What the grains of a kind are made of.
+struct GrainMaterial {
+  AnyLaw law;
+  double density = 0;  ///< rho [kg/m^3]
+};
+
+/// Eight grains of one topology and one kind, one in each lane. Lanes without a grain repeat the first one
+/// and are not read.
 struct GrainBatch {
   const Topology* topology = nullptr;
+  int kind = 0;                           ///< of all its grains
   std::array<int, Wide::size> grain;      ///< index of the grain in each lane, -1 for none
   Wide radius = 1.0;                      ///< R [m]
   Vec<2, Wide> placed_along{{1.0, 0.0}};  ///< (cos, sin) of the angle of placement
@@ -40,24 +47,41 @@ struct GrainPlacement {
   Vec<2> centre;         ///< [m]
   double angle = 0;      ///< [rad] of the reference grid
   Vec<2> velocity;       ///< [m/s]
+  int kind = 0;
 };
 
 /// Soft grains by total-Lagrangian MPM: each has its own grid and velocity field; they meet only through
 /// contact. Per metre of depth, plane strain.
 class SoftGrains {
  public:
-  /// density rho [kg/m^3]. Grains of one topology share batches. Raises UsageError for radii or densities not
-  /// positive.
-  SoftGrains(std::vector<GrainPlacement> grains, AnyLaw law, double density);
+  /// materials: by kind. Grains of one topology and kind share batches. Raises UsageError for radii or
+  /// densities not positive.
+  SoftGrains(std::vector<GrainPlacement> grains, std::vector<GrainMaterial> materials);
+  /// Of one kind; density rho [kg/m^3].
+  SoftGrains(std::vector<GrainPlacement> grains, AnyLaw law, double density)
+      : SoftGrains(std::move(grains), {GrainMaterial{law, density}}) {}
 
   int size() const { return static_cast<int>(radius_.size()); }
   double radius(int grain) const { return radius_[grain]; }
+  int kinds() const { return static_cast<int>(materials_.size()); }
+  int kind(int grain) const { return batches[place_[grain].batch].kind; }
+  const GrainMaterial& material(int kind) const { return materials_[kind]; }
+  const AnyLaw& law(const GrainBatch& batch) const { return materials_[batch.kind].law; }
+  double density(const GrainBatch& batch) const { return materials_[batch.kind].density; }
+  /// Of all grains together, undeformed [kg/m^3].
+  double mean_density() const;
+  /// Does a kind flow, creep or relax?
+  bool has_history() const;
+  /// The fastest of all kinds: of pressure waves in the unstrained material [m/s].
+  double fastest_wave() const;
+  /// rho c^2 of the stiffest kind [Pa].
+  double largest_wave_modulus() const;
   /// rho pi R^2 for a disk [kg/m].
   double mass(int grain) const;
   const Topology& topology(int grain) const { return *shapes_[grain]; }
   /// Mass of node i of the grains of a batch [kg/m].
   Wide node_mass(const GrainBatch& batch, int node) const {
-    return density * batch.topology->node_volume[node] * (batch.radius * batch.radius);
+    return density(batch) * batch.topology->node_volume[node] * (batch.radius * batch.radius);
   }
 
   /// Outline vertices of all grains, one after the other, counter-clockwise.
@@ -90,8 +114,6 @@ class SoftGrains {
   /// number; -1 if none does.
   int runaway_grain(double dt) const;
 
-  AnyLaw law;
-  double density = 0;  ///< rho [kg/m^3]
   std::vector<GrainBatch> batches;
 
  private:
@@ -100,6 +122,7 @@ class SoftGrains {
   struct Place {
     int batch = 0, lane = 0;
   };
+  std::vector<GrainMaterial> materials_;
   std::vector<std::shared_ptr<const Topology>> shapes_;  // of each grain
   std::vector<double> radius_;
   std::vector<Place> place_;

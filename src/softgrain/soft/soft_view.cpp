@@ -130,9 +130,14 @@ Scene soft_scene(const SoftView& view) {
   scene.particles["pressure"] = {1, std::move(pressure)};
   scene.particles["J"] = {1, std::move(dilatation)};
   scene.particles["stress"] = {4, std::move(stress)};
-  if (has_history(grains.law)) {
+  if (grains.has_history()) {
     scene.particles["von_mises_stress"] = {1, std::move(von_mises)};
     scene.particles["plastic_strain"] = {1, std::move(plastic_strain)};
+  }
+  if (grains.kinds() > 1) {
+    std::vector<std::int64_t> kind;
+    for (const std::int64_t g : grain_of_point) kind.push_back(grains.kind(static_cast<int>(g)));
+    scene.particles["kind"] = {1, std::move(kind)};
   }
   scene.particles["grain"] = {1, std::move(grain_of_point)};
   scene.outlines["position"] = to_array(outline);

@@ -81,7 +81,7 @@ double largest_square_frequency(const SoftGrains& grains, const GrainBatch& batc
     const Wide square = largest_eigenvalue(K, &batch.topology->points[4 * cell], largest);
     largest = select(square > largest, square, largest);
   });
-  const double density = grains.density * batch.topology->grid.fullness;
+  const double density = grains.density(batch) * batch.topology->grid.fullness;
   double most = 0;
   for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
     most = std::max(most, largest[lane] / (density * batch.radius[lane] * batch.radius[lane]));
@@ -91,15 +91,20 @@ double largest_square_frequency(const SoftGrains& grains, const GrainBatch& batc
 }  // namespace
 
 double stable_time_step(const SoftGrains& grains, double safety) {
-  double shortest = std::numeric_limits<double>::infinity();
+  std::vector<double> shortest(grains.kinds(), std::numeric_limits<double>::infinity());
   for (int g = 0; g < grains.size(); ++g) {
     const ReferenceGrid& grid = grains.topology(g).grid;
+    double& of_kind = shortest[grains.kind(g)];
     for (const auto& cell : grid.cell)
       for (int a = 0; a < 4; ++a)
-        shortest =
-            std::min(shortest, grains.radius(g) * norm(grid.node[cell[a]] - grid.node[cell[(a + 1) % 4]]));
+        of_kind =
+            std::min(of_kind, grains.radius(g) * norm(grid.node[cell[a]] - grid.node[cell[(a + 1) % 4]]));
   }
-  return safety * shortest / wave_speed(grains.law, grains.density);
+  double step = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < grains.kinds(); ++k)
+    step =
+        std::min(step, safety * shortest[k] / wave_speed(grains.material(k).law, grains.material(k).density));
+  return step;
 }
 
 double longest_stable_step(const SoftGrains& grains, double damping_share) {

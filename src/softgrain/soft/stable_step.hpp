@@ -4,7 +4,7 @@
 namespace softgrain {
 
 /// A quick step [s]: `safety` times the smallest distance of two nodes of a cell over the wave speed of
-/// unstrained material.
+/// its unstrained material.
 double stable_time_step(const SoftGrains& grains, double safety = 0.5);
 
 /// The longest stable step [s] of ExplicitDynamics from where the grains are now, deformed as they are:

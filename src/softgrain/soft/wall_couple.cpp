@@ -4,7 +4,9 @@
 
 namespace softgrain {
 
-std::vector<Wide> grains_on_walls_alone(const SoftGrains& grains, std::span<const OutlineContact> contacts) {
+std::vector<Wide> grains_on_smooth_walls_alone(const SoftGrains& grains,
+                                               std::span<const OutlineContact> contacts,
+                                               const FrictionByKind& friction) {
   std::vector<char> at_wall(grains.size(), 0), at_grain(grains.size(), 0);
   for (const OutlineContact& c : contacts) {
     (c.wall >= 0 ? at_wall : at_grain)[grains.grain_of_vertex(c.vertex)] = 1;
@@ -13,6 +15,7 @@ std::vector<Wide> grains_on_walls_alone(const SoftGrains& grains, std::span<cons
   std::vector<Wide> alone(grains.batches.size(), 0.0);
   for (std::size_t b = 0; b < alone.size(); ++b) {
     const GrainBatch& batch = grains.batches[b];
+    if (friction.at_walls(batch.kind) > 0) continue;
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
       if (const int g = batch.grain[lane]; batch.topology->round && at_wall[g] != 0 && at_grain[g] == 0)
         alone[b].set(lane, 1);

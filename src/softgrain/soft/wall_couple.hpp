@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "softgrain/soft/outline_contacts.hpp"
+#include "softgrain/soft/pair_friction.hpp"
 
 namespace softgrain {
 
@@ -11,9 +12,11 @@ namespace softgrain {
 /// cells bear has an arm about the centre, of some hundredths of R where the contact is a few segments wide
 /// (docs/decisions/0034). A couple takes that off such grains: 1 in their lanes, 0 in others.
 ///
-/// Such a grain is round (Topology::round), and all contacts of its vertices in the list, also open ones, are
-/// with walls. (batches)
-std::vector<Wide> grains_on_walls_alone(const SoftGrains& grains, std::span<const OutlineContact> contacts);
+/// Such a grain is round (Topology::round), walls are frictionless for its kind, and all contacts of its
+/// vertices in the list, also open ones, are with walls. (batches)
+std::vector<Wide> grains_on_smooth_walls_alone(const SoftGrains& grains,
+                                               std::span<const OutlineContact> contacts,
+                                               const FrictionByKind& friction);
 
 /// Gives the grains whose lanes in `alone` are 1 the rotation that takes back the angular momentum that
 /// `impulse` gave them about their centres. outline: (outline vertices) where they are [m].

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "softgrain/io/case/case_kinds.hpp"
 #include "softgrain/io/case/case_stages.hpp"
 #include "softgrain/io/case/case_value.hpp"
 #include "softgrain/io/case/schema.hpp"
@@ -26,6 +27,7 @@ std::string why_no_extension(const Case& begun, const Case& wanted) {
                          written_value(wanted, key));
     end_moved = true;
   }
+  if (kinds_text(begun) != kinds_text(wanted)) return "its kinds of grains were others";
   if (stages_text(begun) != stages_text(wanted)) return "its stages were others";
   const Case::Loading &before = begun.loading, &now = wanted.loading;
   if (now.max_strain < before.max_strain ||

@@ -7,8 +7,10 @@
 #include <optional>
 
 #include "softgrain/experiment/estimate.hpp"
+#include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/sample.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
+#include "softgrain/io/case/case_kinds.hpp"
 #include "softgrain/io/case/case_relations.hpp"
 #include "softgrain/io/case/case_value.hpp"
 #include "softgrain/io/case/form_reader.hpp"
@@ -35,6 +37,7 @@ class CaseReader {
       settle_time_step();
       given_ = draft_.the_case;
       const PlacedLines lines = place_grains(forms_, draft_, sources_);
+      forms_.finish_kinds();
       draft_.the_case = complete_sample(draft_.the_case);
       take_speed_of_stages();
       check_placement(draft_, lines);
@@ -52,15 +55,21 @@ class CaseReader {
     std::vector<std::string> names;
     for (const Key& key : case_keys()) {
       const auto at = draft_.origins.find(key.name);
-      if (at == draft_.origins.end() || key.acts.covers(draft_.the_case)) continue;
+      if (at == draft_.origins.end() || covers_a_kind(key)) continue;
       const std::string value = si_value(given_, key), held = si_value(draft_.the_case, key);
       const bool repeats = value == si_value(Case{}, key) || (is_derived(key) && value == held);
       if (at->second.set >= 0 || !repeats) names.push_back(key.name);
     }
     for (const std::string& name : keys_set_by_stages(draft_.the_case))
-      if (!find_key(name)->acts.covers(draft_.the_case) && std::ranges::find(names, name) == names.end())
+      if (!covers_a_kind(*find_key(name)) && std::ranges::find(names, name) == names.end())
         names.push_back(name);
     return names;
+  }
+
+  /// Does the key do anything for a kind?
+  bool covers_a_kind(const Key& key) const {
+    return largest_of_kinds(draft_.the_case,
+                            [&](const Case& kind) { return key.acts.covers(kind) ? 1.0 : 0.0; }) > 0;
   }
 
   /// Does complete_sample say what this key says?
@@ -191,6 +200,8 @@ class CaseReader {
     for (const Relation& relation : case_relations()) {
       const auto is_invalid = [&](const std::string& key) { return !draft_.is_valid(key); };
       if (std::any_of(relation.keys.begin(), relation.keys.end(), is_invalid)) continue;
+      if (!draft_.the_case.kinds.empty() && std::ranges::all_of(relation.keys, is_key_of_kind))
+        continue;  // looked at for each kind
       const std::string message = relation.broken(draft_.the_case);
       if (!message.empty()) draft_.add(last_origin(relation.keys), message);
     }

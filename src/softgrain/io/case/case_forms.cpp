@@ -28,10 +28,10 @@ std::vector<FormKey> all_forms() {
   return {
       only("experiment.dimension", "2", "dimensions of space"),
 
-      {"kind.name", Takes::text, {}, "name of the kind, for [[pair]] and the column kind of a sample's file"},
+      {"kind.name", Takes::text, {}, "name of the kind, for [[pair]], for --set kind.NAME.key=value and for the column kind of a sample's file; several kinds need one each"},
       stands_for("kind.model", {"experiment.model"}, "model of these grains", {"rigid"}),
       stands_for("kind.number", {"sample.grains"}, "grains of this kind in the box"),
-      only("kind.share", "1", "share of the grains' area that this kind has"),
+      number("kind.share", "", positive, "share of the area of sample.grains grains that this kind has, in proportion; all kinds have one, or all a number"),
       word("kind.shape", {"disk"}, {"ellipse", "polygon", "outline"}, "shape of the undeformed grain"),
       stands_for("kind.density", {"grain.density"}, "density of the material"),
       stands_for("kind.diameter", {"sample.smallest_diameter", "sample.largest_diameter"}, "diameter of all grains of this kind; a table for a law of diameters"),
@@ -136,9 +136,16 @@ const std::vector<FormKey>& form_keys() {
 const std::vector<TableOfKeys>& form_tables() {
   static const std::vector<TableOfKeys> tables{
       {"kind",
-       "A kind of grains, instead of [grain], [sample] and the material's keys of [mpm] or [bpm]. One "
-       "today."},
-      {"pair", "What acts between two kinds, or a kind and the walls, instead of [contact]."},
+       "A kind of grains, instead of [grain], [sample] and the material's keys of [mpm] or [bpm]. Several "
+       "kinds\n"
+       "(elastic grains in a box) mix in one sample; what [grain], [mpm] and [sample] say then\nholds for "
+       "the "
+       "kinds that "
+       "do not say it themselves."},
+      {"pair",
+       "What acts between two kinds, or a kind and the walls, instead of [contact]; of several kinds\n"
+       "contact.friction and "
+       "contact.wall_friction are those of the pairs that have no table."},
       {"stage",
        "A part of the loading path of grains in a box, one after the other, instead of a short form of "
        "[loading]."},

@@ -207,6 +207,17 @@ std::string formulation_cannot(const Case& c) {
   return "";
 }
 
+std::string kinds_cannot(const Case& c) {
+  if (c.kinds.empty()) return "";
+  if (c.experiment.model != GrainModel::mpm)
+    return "not yet: several [[kind]] of bonded grains come with a later version; today several kinds are "
+           "elastic grains: "
+           "experiment.model \"mpm\"";
+  return is_in_a_box(c)
+             ? ""
+             : "several [[kind]] need a box: experiment.loading \"compaction\" or another but \"diametral\"";
+}
+
 std::vector<std::string> keys_of_laws() {
   std::vector<std::string> keys{"mpm.law"};
   for (const MaterialParameter& p : material_parameters) keys.push_back(fmt::format("mpm.{}", p.name));
@@ -238,6 +249,7 @@ const std::vector<Relation>& case_relations() {
       {{"loading.max_packing_fraction", "sample.packing_fraction"}, too_dense_from_the_start},
       {{"loading.hold_stress", "loading.hold", "experiment.loading"}, cannot_hold_a_stress},
       {{"experiment.loading"}, stages_and_path_differ},
+      {{"experiment.model", "experiment.loading"}, kinds_cannot},
       {{"experiment.loading", "loading.confining_stress", "loading.max_stress", "loading.hold",
         "loading.shear_rate"},
        path_incomplete},

@@ -119,9 +119,9 @@ constexpr std::string_view introduction =
     "A key that is left out keeps its default. Everything is two-dimensional, per metre of depth.\n\n"
     "The short form has one kind of grains and one path: `[grain]`, `[sample]`, `[contact]`, `[loading]`. "
     "The long\n"
-    "form says the same with `[[kind]]`, `[[pair]]` and `[[stage]]`, at the end of this page. A run writes "
-    "the short\n"
-    "form, with every value, to its `case.toml`.\n";
+    "form says the same with `[[kind]]`, `[[pair]]` and `[[stage]]`, at the end of this page, and more: "
+    "several kinds and\n"
+    "stages of one's own. A run writes every value to its `case.toml`, of one kind in the short form.\n";
 
 constexpr std::string_view sample_files =
     "\n## The file of a sample\n\n"
@@ -132,7 +132,8 @@ constexpr std::string_view sample_files =
     "3.1, 1.2, 0.9, 45, copper\n2.0, 2.9, 1.0, 0, copper\n```\n\n"
     "`x`, `y` and `radius` must be there. `angle` turns a grain and is 0 where it is left out. `kind` is the "
     "name of\n"
-    "the `[[kind]]`. Lines that begin with `#` are skipped. Columns stand in any order.\n\n"
+    "the `[[kind]]`; of several kinds the column must be there.\nLines that begin with `#` are skipped. "
+    "Columns stand in any order.\n\n"
     "The box has its corner at (0, 0), and `box.width` and `box.height`. A side that the case leaves out is "
     "that of\n"
     "the bounding box of all grains, and all grains are moved along it so that the first touches the wall at "

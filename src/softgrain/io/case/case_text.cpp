@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "softgrain/io/case/case_kinds.hpp"
 #include "softgrain/io/case/case_stages.hpp"
 #include "softgrain/io/case/case_value.hpp"
 #include "softgrain/io/case/schema.hpp"
@@ -49,11 +50,12 @@ std::string resolved_case_text(const Case& the_case) {
   std::string text = "# Resolved case: every default filled in, SI units.\n";
   for_each_key([&](const TableOfKeys& table) { text += fmt::format("\n[{}]\n", table.name); },
                [&](const Key& key) {
+                 if (!the_case.kinds.empty() && is_key_of_kind(key.name)) return;
                  const std::string unit = si_unit_of(key);
                  text += fmt::format("{} = {}{}\n", key.short_name(), si_value(the_case, key),
                                      unit.empty() ? "" : "  # " + unit);
                });
-  return text + stages_text(the_case);
+  return text + kinds_text(the_case) + stages_text(the_case);
 }
 
 std::string case_json(const Case& the_case) {
@@ -61,6 +63,7 @@ std::string case_json(const Case& the_case) {
   for_each_key(
       [&](const TableOfKeys& table) { tables[table.name] = Json::object(); },
       [&](const Key& key) { tables[key.table()][key.short_name()] = Json::parse(si_value(the_case, key)); });
+  tables.update(Json::parse(kinds_json(the_case)));
   if (!the_case.stages.empty()) tables["stage"] = Json::parse(stages_json(the_case));
   return tables.dump(2);
 }

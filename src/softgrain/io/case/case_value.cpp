@@ -82,16 +82,24 @@ Integer read_integer(const Key& key, const TomlValue& value) {
   return static_cast<Integer>(*i);
 }
 
-/// [x, y, radius, angle] in SI.
+/// [x, y, radius, angle] in SI, or with the number of its kind.
 PlacedGrain read_grain(const Key& key, const TomlValue& value) {
   const auto* items = std::get_if<TomlValue::Array>(&value.content);
   std::vector<double> numbers;
   if (items != nullptr)
     for (const TomlValue& item : *items) numbers.push_back(read_number(key, item));
-  require(numbers.size() == 4 && numbers[2] > 0,
-          "{} takes four numbers for each grain, [x, y, radius, angle] in m and rad, with radius > 0; got {}",
+  if (numbers.size() == 4) numbers.push_back(0);
+  constexpr double most_kinds = 1000;
+  require(numbers.size() == 5 && numbers[2] > 0 && numbers[4] >= 0 && numbers[4] < most_kinds &&
+              numbers[4] == std::floor(numbers[4]),
+          "{} takes four numbers for each grain, [x, y, radius, angle] in m and rad, with radius > 0, or a "
+          "fifth for "
+          "its kind, from 0 on; got {}",
           key.name, items == nullptr ? shown(value) : fmt::format("[{}]", fmt::join(numbers, ", ")));
-  return {.centre = {numbers[0], numbers[1]}, .radius = numbers[2], .angle = numbers[3]};
+  return {.centre = {numbers[0], numbers[1]},
+          .radius = numbers[2],
+          .angle = numbers[3],
+          .kind = static_cast<int>(numbers[4])};
 }
 
 struct Assign {
@@ -175,8 +183,9 @@ std::string text_of(const Case& the_case, const Key& key, const WriteNumber& wri
       std::string list;
       for (const PlacedGrain& grain : value)
         list +=
-            fmt::format("{}\n  [{}, {}, {}, {}]", list.empty() ? "" : ",", write_number(grain.centre[0]),
-                        write_number(grain.centre[1]), write_number(grain.radius), write_number(grain.angle));
+            fmt::format("{}\n  [{}, {}, {}, {}{}]", list.empty() ? "" : ",", write_number(grain.centre[0]),
+                        write_number(grain.centre[1]), write_number(grain.radius), write_number(grain.angle),
+                        grain.kind == 0 ? "" : fmt::format(", {}", grain.kind));
       return fmt::format("[{}{}]", list, list.empty() ? "" : "\n");
     } else if constexpr (std::is_same_v<T, std::string_view>) {
       return fmt::format("\"{}\"", value);

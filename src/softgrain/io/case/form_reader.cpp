@@ -105,7 +105,6 @@ void FormReader::read_tables(const std::string& table, const TomlValue& tables, 
   const auto* items = std::get_if<TomlValue::Array>(&tables.content);
   if (items == nullptr)
     return draft_.add(at, fmt::format("'{}' may stand several times: write [[{}]]", table, table));
-  int number = 0;
   for (const TomlValue& item : *items) {
     const auto* entries = std::get_if<TomlValue::Table>(&item.content);
     const Origin origin{.at = item.at.line > 0 ? item.at : at.at};
@@ -115,11 +114,8 @@ void FormReader::read_tables(const std::string& table, const TomlValue& tables, 
       pairs_.emplace_back(*entries, origin);
     else if (table == "stage")
       stages_.push_back(read_stage(*entries, origin));
-    else if (++number > 1)
-      draft_.add(
-          origin,
-          "not yet: a second [[kind]] comes with a later version; today all grains are of one kind, which "
-          "may have several diameters: diameter = { values = [\"1 mm\", \"2 mm\"], shares = [0.4, 0.6] }");
+    else if (items->size() > 1)
+      keep_kind(*entries, origin);
     else
       read_kind(*entries);
   }
@@ -127,6 +123,7 @@ void FormReader::read_tables(const std::string& table, const TomlValue& tables, 
 
 bool FormReader::read_key(const std::string& name, const TomlValue& value, Origin origin) {
   if (const std::string later = not_yet(name); !later.empty()) return draft_.add(origin, later), true;
+  if (!kinds_.empty() && name.starts_with("kind.")) return keep_key_of_kind(name, value, origin);
   const FormKey* form = find_form(name);
   if (form == nullptr) return false;
   if (name.starts_with("pair.") || name.starts_with("stage."))
@@ -152,6 +149,10 @@ void FormReader::give(const FormKey& form, const TomlValue& value, Origin origin
       draft_.the_case.grain.radius = draft_.the_case.sample.smallest_diameter / 2;
   } else if (form.takes == Takes::word || form.takes == Takes::only) {
     check_word(form, value, origin);
+  } else if (form.takes == Takes::number) {
+    if (const auto share = number(form, value, origin); share && *share != 1)
+      draft_.add(origin,
+                 fmt::format("{} = {}: there is only one [[kind]], which has all grains", form.name, *share));
   } else if (text == nullptr || text->empty()) {
     draft_.add(value.at.line > 0 ? Origin{.set = origin.set, .at = value.at} : origin,
                fmt::format("{} takes a text", form.name));
@@ -244,14 +245,15 @@ void FormReader::read_pair(const TomlValue::Table& table, Origin at) {
                         fmt::format("not yet: pair.between a kind and the wall '{}' alone comes with a later "
                                     "version; today \"wall\" is all of them",
                                     side));
-    } else if (side != kind_name_) {
-      const std::vector<std::string> names{kind_name_, "wall"};
+    } else if (std::vector<std::string> names = kind_names(); std::ranges::find(names, side) == names.end()) {
+      names.emplace_back("wall");
       return draft_.add(
           at, fmt::format("pair.between: no [[kind]] has the name '{}'{}", side, did_you_mean(side, names)));
     }
   }
   if (walls == 2) return draft_.add(at, "pair.between: two walls never meet");
   if (friction == nullptr) return;
+  if (!kinds_.empty()) return add_pair(walls, sides, *friction, friction_at);
   const char* key = walls == 1 ? "contact.wall_friction" : "contact.friction";
   draft_.give(*find_key(key), walls == 1 ? "pair.friction of a wall" : "pair.friction", *friction,
               friction_at);

@@ -28,13 +28,36 @@ class FormReader {
 
   const std::string& sample_file() const { return sample_file_; }
   Origin sample_file_origin() const { return sample_file_origin_; }
-  const std::string& kind_name() const { return kind_name_; }
+  /// Of all kinds, in their order; "" where the only one has none.
+  std::vector<std::string> kind_names() const;
+
+  /// Several kinds, once all keys and overrides and the places of the grains are known.
+  void finish_kinds();
 
  private:
   using Visit = std::function<void(const FormKey&, const TomlValue&, Origin)>;
 
   void for_each_entry(const std::string& prefix, const TomlValue::Table& table, int set, const Visit& visit);
+  /// What one of several kinds says.
+  struct KindText {
+    struct Entry {
+      const FormKey* form;
+      TomlValue value;
+      Origin origin;
+    };
+    std::string name;
+    Origin at;
+    double share = 0;  // 0: none is given
+    bool has_number = false;
+    std::vector<Entry> entries;
+  };
   void read_kind(const TomlValue::Table& table);
+  void keep_kind(const TomlValue::Table& table, Origin at);
+  bool keep_key_of_kind(const std::string& name, const TomlValue& value, Origin origin);
+  void finish_kind(KindText& text);
+  void count_grains();
+  void count_placed();
+  void add_pair(int walls, const std::vector<std::string>& sides, const TomlValue& friction, Origin origin);
   void read_pair(const TomlValue::Table& table, Origin at);
   StageText read_stage(const TomlValue::Table& table, Origin at);
   void give(const FormKey& form, const TomlValue& value, Origin origin);
@@ -43,7 +66,8 @@ class FormReader {
   std::optional<double> number(const FormKey& form, const TomlValue& value, Origin origin);
 
   CaseDraft& draft_;
-  std::string kind_name_;  // "" where no kind has a name
+  std::string kind_name_;        // of the only kind, "" where it has none
+  std::vector<KindText> kinds_;  // where there are several
   std::string sample_file_;
   Origin sample_file_origin_;
   std::vector<std::pair<TomlValue::Table, Origin>> pairs_;

@@ -63,7 +63,7 @@ PlacedLines place_grains(const FormReader& forms, CaseDraft& draft, std::vector<
   } catch (const UsageError& error) {
     return draft.add(origin, fmt::format("sample.file: {}", error.what())), PlacedLines{};
   }
-  SampleText text = read_sample_text(sources.back().text, forms.kind_name());
+  SampleText text = read_sample_text(sources.back().text, forms.kind_names());
   for (const SampleIssue& issue : text.issues) draft.add({.at = issue.at, .source = 1}, issue.message);
   sample.placed = std::move(text.grains);
   draft.origins["sample.placed"] = origin;

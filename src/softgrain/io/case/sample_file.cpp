@@ -53,7 +53,7 @@ struct ColumnOfFile {
 
 class Reader {
  public:
-  explicit Reader(const std::string& kind) : kind_(kind) {}
+  explicit Reader(const std::vector<std::string>& kinds) : kinds_(kinds) {}
 
   SampleText read(std::string_view text) {
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // with which spreadsheets begin
@@ -91,6 +91,10 @@ class Reader {
           result_.issues.size() == before)
         add(1, fmt::format("no column '{}': the first line names the columns, as in {}", column_names[needed],
                            example()));
+    if (kinds_.size() > 1 && std::ranges::find(columns_, kind, &ColumnOfFile::column) == columns_.end() &&
+        result_.issues.size() == before)
+      add(1, fmt::format("no column 'kind', but the case has several [[kind]]: '{}'",
+                         fmt::join(kinds_, "', '")));
     has_header_issue_ = result_.issues.size() > before;
     if (columns_.empty()) columns_.push_back({kind, ""});  // the header is read
   }
@@ -138,7 +142,7 @@ class Reader {
 
   bool read_cell(const Cell& cell, const ColumnOfFile& column, PlacedGrain& grain) {
     const std::string& name = column_names[column.column];
-    if (column.column == kind) return read_kind(cell);
+    if (column.column == kind) return read_kind(cell, grain);
     double value = 0;
     try {
       value = parse_quantity(fmt::format("{} {}", cell.text, column.unit), column.dimension());
@@ -158,18 +162,17 @@ class Reader {
     return true;
   }
 
-  bool read_kind(const Cell& cell) {
-    if (kind_.empty()) kind_ = cell.text;
-    if (cell.text == kind_) return true;
-    add(cell.column,
-        fmt::format(
-            "not yet: kind = '{}' beside '{}': a second kind of grains comes with a later version; today "
-            "all grains are of one",
-            cell.text, kind_));
+  bool read_kind(const Cell& cell, PlacedGrain& grain) {
+    if (kinds_.size() == 1 && kinds_.front().empty()) kinds_.front() = cell.text;
+    const auto found = std::ranges::find(kinds_, cell.text);
+    grain.kind = static_cast<int>(found - kinds_.begin());
+    if (found != kinds_.end()) return true;
+    add(cell.column, fmt::format("kind = '{}' is the name of no [[kind]]: the case has '{}'", cell.text,
+                                 fmt::join(kinds_, "', '")));
     return false;
   }
 
-  std::string kind_;
+  std::vector<std::string> kinds_;
   std::vector<ColumnOfFile> columns_;
   bool has_header_issue_ = false;
   int line_ = 1;
@@ -178,8 +181,8 @@ class Reader {
 
 }  // namespace
 
-SampleText read_sample_text(std::string_view text, const std::string& kind) {
-  return Reader(kind).read(text);
+SampleText read_sample_text(std::string_view text, const std::vector<std::string>& kinds) {
+  return Reader(kinds).read(text);
 }
 
 }  // namespace softgrain

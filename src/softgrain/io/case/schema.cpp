@@ -158,7 +158,7 @@ std::vector<Key> all_keys() {
       KEY(sample.numbers, "", positive(),
           "how many grains have each diameter of the list, in proportion; neither shares nor numbers: as many of each", listed),
       KEY(sample.placed, "", anything(),
-          "the grains in their places, [x, y, radius, angle] of each in m and rad: what a run writes for sample.file", placed),
+          "the grains in their places, [x, y, radius, angle] of each in m and rad, and the number of its kind but 0: what a run writes for sample.file", placed),
       KEY(box.x, "", its_words(), "what ends the box along x: walls, or its own image", in_a_box),
       KEY(box.y, "", its_words(), "the same along y; periodic only if x is", in_a_box),
       KEY(box.gravity_x, "m/s^2", anything(), "acceleration of gravity along x", in_a_box),

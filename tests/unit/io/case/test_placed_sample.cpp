@@ -135,7 +135,7 @@ TEST_CASE("a file that is not there, or no file, is refused where it is named") 
   CHECK(mentions(source.refusal({"sample.file=" + source.directory.path().string()}), "is not a file"));
   CHECK(mentions(source.refusal({"sample.placed=[[0, 0, 1, 0]]"}), "both place the grains"));
   CHECK(mentions(source.refusal({"kind.name=iron"}),
-                 "grains.csv:2:13: error: not yet: kind = 'copper' beside 'iron'"));
+                 "grains.csv:2:13: error: kind = 'copper' is the name of no [[kind]]: the case has 'iron'"));
   CHECK(mentions(PlacedCase("x, y, radius\n0, 0, 1\n", "[sample]\nplaced = [[0, 0, -1, 0]]\n").refusal(),
                  "error"));
   try {

@@ -10,8 +10,8 @@ using namespace softgrain;
 namespace {
 
 /// "line:column: message" of the only issue.
-std::string refusal(const std::string& text, const std::string& kind = "") {
-  const SampleText sample = read_sample_text(text, kind);
+std::string refusal(const std::string& text, const std::vector<std::string>& kinds = {""}) {
+  const SampleText sample = read_sample_text(text, kinds);
   REQUIRE(sample.issues.size() == 1);
   const auto& [at, message] = sample.issues.front();
   return std::to_string(at.line) + ":" + std::to_string(at.column) + ": " + message;
@@ -24,7 +24,7 @@ TEST_CASE("a table of grains is read in its units, exactly, in any order of colu
       "\xEF\xBB\xBF# three grains\r\n\r\n  radius [mm] ,kind, x [cm], y, angle [deg]\r\n0.9, a, 0.1, 2e-3, "
       "90\r\n# more\n"
       "1, a, -0.25, +1.5e-3, 0\n0.7,a,0,0,-45",
-      "");
+      {""});
   CHECK(sample.issues.empty());
   REQUIRE(sample.grains.size() == 3);
   CHECK(sample.grains[0].radius == 0.9e-3);
@@ -36,7 +36,7 @@ TEST_CASE("a table of grains is read in its units, exactly, in any order of colu
 }
 
 TEST_CASE("without units a table is in SI, and angles may be left out") {
-  const SampleText sample = read_sample_text("x,y,radius\n0.001,0.002,0.0005\n", "");
+  const SampleText sample = read_sample_text("x,y,radius\n0.001,0.002,0.0005\n", {""});
   CHECK(sample.issues.empty());
   REQUIRE(sample.grains.size() == 1);
   CHECK(sample.grains[0] == PlacedGrain{{0.001, 0.002}, 0.0005, 0});
@@ -65,15 +65,26 @@ TEST_CASE("what is wrong with a table is told with its line, column, value and r
   CHECK(refusal("x, y, radius\n").starts_with("2:1: no grains"));
   CHECK(refusal("x, y, radius\n1, 2, \x01\n").starts_with("2:1: not text"));
   CHECK(refusal("x, y, radius, kind\n1, 1, 1, a\n2, 2, 1, b\n")
-            .starts_with("3:10: not yet: kind = 'b' beside 'a'"));
-  CHECK(
-      refusal("x, y, radius, kind\n1, 1, 1, a\n", "copper").starts_with("2:10: not yet: kind = 'a' beside"));
+            .starts_with("3:10: kind = 'b' is the name of no [[kind]]: the case has 'a'"));
+  CHECK(refusal("x, y, radius, kind\n1, 1, 1, a\n", {"copper"})
+            .starts_with("2:10: kind = 'a' is the name of no [[kind]]: the case has 'copper'"));
+  CHECK(refusal("x, y, radius\n1, 1, 1\n", {"copper", "lead"})
+            .starts_with("1:1: no column 'kind', but the case has several [[kind]]: 'copper', 'lead'"));
+}
+
+TEST_CASE("grains of a table are of the kinds that it names") {
+  const SampleText sample = read_sample_text(
+      "kind, x, y, radius\nlead, 1, 1, 1\ncopper, 3, 1, 1\nlead, 5, 1, 1\n", {"copper", "lead"});
+  REQUIRE(sample.grains.size() == 3);
+  CHECK(sample.grains[0].kind == 1);
+  CHECK(sample.grains[1].kind == 0);
+  CHECK(sample.grains[2].kind == 1);
 }
 
 TEST_CASE("a table with an error in every line stops after twenty, and one with too many grains is refused") {
   std::string bad = "x, y, radius\n", large = bad;
   for (int line = 0; line < 1000; ++line) bad += "a, b, c\n";
-  CHECK(read_sample_text(bad, "").issues.size() == 20);
+  CHECK(read_sample_text(bad, {""}).issues.size() == 20);
   for (std::size_t line = 0; line <= most_placed_grains; ++line) large += "1, 1, 1\n";
   CHECK(refusal(large).starts_with("10002:1: not yet: more than 10000 grains"));
 }

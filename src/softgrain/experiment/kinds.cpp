@@ -1,0 +1,31 @@
+#include "softgrain/experiment/kinds.hpp"
+
+#include <utility>
+
+namespace softgrain {
+
+Case case_of_kind(Case c, int k) {
+  if (c.kinds.empty()) return c;
+  const Case::Kind kind = std::move(c.kinds[k]);
+  c.kinds.clear();
+  c.pairs.clear();
+  c.grain.density = kind.density;
+  c.mpm.law = kind.law;
+  c.mpm.material = kind.material;
+  c.mpm.cells = kind.cells;
+  static_cast<Case::Sizes&>(c.sample) = kind.sizes;
+  c.sample.grains = kind.grains;
+  return c;
+}
+
+Case::Kind kind_of(const Case& c) {
+  return {.name = {},
+          .grains = c.sample.grains,
+          .density = c.grain.density,
+          .law = c.mpm.law,
+          .material = c.mpm.material,
+          .cells = c.mpm.cells,
+          .sizes = c.sample};
+}
+
+}  // namespace softgrain

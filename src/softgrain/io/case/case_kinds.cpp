@@ -1,0 +1,87 @@
+#include "softgrain/io/case/case_kinds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "softgrain/experiment/kinds.hpp"
+#include "softgrain/io/case/case_forms.hpp"
+#include "softgrain/io/case/case_value.hpp"
+
+namespace softgrain {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Keys of a kind, each with the one key of the schema for which it stands. kind.model is that of all kinds,
+/// and kind.diameter stands for two that have keys of their own.
+const std::vector<FormKey>& written_keys() {
+  static const std::vector<FormKey> keys = [] {
+    std::vector<FormKey> written;
+    for (const FormKey& form : form_keys())
+      if (form.name.starts_with("kind.") && form.takes == Takes::as_key && form.keys.size() == 1 &&
+          !form.keys.front().starts_with("bpm.") && form.name != "kind.model")
+        written.push_back(form);
+    return written;
+  }();
+  return keys;
+}
+
+/// "law.young_modulus".
+std::string name_within(const FormKey& form) { return form.name.substr(std::string_view("kind.").size()); }
+
+/// visit(name, value) of all keys of the k-th kind. Of placed grains their places say number and diameters.
+template <class Visit>
+void for_each_value(const Case& c, int k, const Visit& visit) {
+  const Case kind = case_of_kind(c, k);
+  for (const FormKey& form : written_keys()) {
+    const std::string& key = form.keys.front();
+    if (c.sample.placed.empty() || !key.starts_with("sample."))
+      visit(name_within(form), si_value(kind, *find_key(key)));
+  }
+}
+
+std::string side_of(const Case& c, int kind) {
+  return kind == Case::Pair::wall ? "wall" : c.kinds[kind].name;
+}
+
+}  // namespace
+
+bool is_key_of_kind(const std::string& name) {
+  return std::ranges::any_of(written_keys(), [&](const FormKey& form) { return form.keys.front() == name; });
+}
+
+std::string kinds_text(const Case& c) {
+  std::string text;
+  for (int k = 0; k < static_cast<int>(c.kinds.size()); ++k) {
+    text += fmt::format("\n[[kind]]\nname = {}\n", Json(c.kinds[k].name).dump());
+    for_each_value(c, k, [&](const std::string& name, const std::string& value) {
+      text += fmt::format("{} = {}\n", name, value);
+    });
+  }
+  for (const Case::Pair& pair : c.pairs)
+    text += fmt::format("\n[[pair]]\nbetween = [{}, {}]\nfriction = {}\n", Json(side_of(c, pair.kind)).dump(),
+                        Json(side_of(c, pair.other)).dump(), pair.friction);
+  return text;
+}
+
+std::string kinds_json(const Case& c) {
+  Json json = Json::object();
+  for (int k = 0; k < static_cast<int>(c.kinds.size()); ++k) {
+    Json kind{{"name", c.kinds[k].name}};
+    for_each_value(c, k, [&](const std::string& name, const std::string& value) {
+      const auto dot = name.find('.');
+      (dot == std::string::npos ? kind[name] : kind[name.substr(0, dot)][name.substr(dot + 1)]) =
+          Json::parse(value);
+    });
+    json["kind"].push_back(kind);
+  }
+  for (const Case::Pair& pair : c.pairs)
+    json["pair"].push_back(
+        {{"between", {side_of(c, pair.kind), side_of(c, pair.other)}}, {"friction", pair.friction}});
+  return json.dump();
+}
+
+}  // namespace softgrain
