@@ -32,8 +32,8 @@ inline Words tiny_path(const std::string& name) {
   if (name == "relaxation")
     add({"loading.wall_velocity=\"1 m/s\"", "loading.hold=\"1 ms\"", "loading.rest=0"});
   if (name == "rubber_sand")
-    add({"loading.wall_velocity=\"5 m/s\"", "loading.unload_at=[0.25]", "loading.unload_by=0.05",
-         "loading.max_stress=0"});
+    add({"loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.17", "loading.unload_at=[0.15]",
+         "loading.unload_by=0.04", "loading.max_stress=0", "sample.packing_fraction=0.62"});
   if (name == "jamming")
     add({"sample.grains=9", "loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.15"});
   if (name == "shear")
