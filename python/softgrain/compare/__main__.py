@@ -6,10 +6,9 @@ from pathlib import Path
 import softgrain
 
 from .. import plot
-from ..options import parse
+from ..verb import carry_out
 from . import compare, draw_comparison, read_measured
 
-USAGE_ERROR, IO_ERROR = 2, 4  # exit codes, those of the program `softgrain`
 FORMATS = (".png", ".svg", ".pdf")
 
 
@@ -23,26 +22,21 @@ def report(comparison, name) -> str:
             f"largest difference   {difference:+.4g}, {100 * difference / most:+.2f} % of the largest measured, at strain {where:.4g}")
 
 
+def draw(options):
+    run = softgrain.open(options.run)
+    path = Path(options.output) if options.output else run.path / "figures" / "compare.png"
+    if path.suffix not in FORMATS:
+        raise ValueError(f"--output {path}: the name must end in one of {', '.join(FORMATS)}")
+    curve = read_measured(options.curve)
+    comparison = compare(run, curve)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with plot.style():
+        plot.save(draw_comparison(comparison, curve.name, run.name), path, [run])
+    print(report(comparison, curve.name), path, sep="\n")
+
+
 def main(arguments=None):
-    options = parse("compare", arguments)
-    try:
-        run = softgrain.open(options.run)
-        path = Path(options.output) if options.output else run.path / "figures" / "compare.png"
-        if path.suffix not in FORMATS:
-            raise ValueError(f"--output {path}: the name must end in one of {', '.join(FORMATS)}")
-        curve = read_measured(options.curve)
-        comparison = compare(run, curve)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with plot.style():
-            plot.save(draw_comparison(comparison, curve.name, run.name), path, [run])
-        print(report(comparison, curve.name), path, sep="\n")
-    except (ValueError, softgrain.NotRecorded) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return USAGE_ERROR
-    except OSError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return IO_ERROR
-    return 0
+    return carry_out("compare", arguments, draw)
 
 
 if __name__ == "__main__":

@@ -6,11 +6,10 @@ from pathlib import Path
 import softgrain
 
 from .. import colours
-from ..options import parse
+from ..verb import carry_out
 from . import scale_of, write_contacts, write_csv, write_lammps, write_svg, write_xyz
 from .paraview import write_scene
 
-USAGE_ERROR, IO_ERROR = 2, 4  # exit codes, those of the program `softgrain`
 MOVIES = {"xyz": (write_xyz, "xyz"), "lammps": (write_lammps, "dump")}  # all frames in one file
 ONE_FRAME = {"csv": (write_csv, "csv"), "contacts": (write_contacts, "contacts.csv"), "svg": (write_svg, "svg")}
 
@@ -47,16 +46,7 @@ def what(run, form, frame):
 
 
 def main(arguments=None):
-    options = parse("export", arguments)
-    try:
-        print(export(options))
-    except (ValueError, softgrain.NotRecorded) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return USAGE_ERROR
-    except OSError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return IO_ERROR
-    return 0
+    return carry_out("export", arguments, lambda options: print(export(options)))
 
 
 if __name__ == "__main__":

@@ -6,11 +6,10 @@ from pathlib import Path
 
 import softgrain
 
-from ..options import parse
 from ..plot.style import provenance, style
+from ..verb import carry_out
 from . import Film, encode
 
-USAGE_ERROR, IO_ERROR = 2, 4  # exit codes, those of the program `softgrain`
 DURATION = 10  # of a film that says nothing else [s]
 SLOWEST, FASTEST = 5, 30  # frames a second
 WIDTHS = {".mp4": 1280, ".gif": 800, "": 1280}  # [px]
@@ -41,16 +40,7 @@ def make(options):
 
 
 def main(arguments=None):
-    options = parse("movie", arguments)
-    try:
-        print(make(options))
-    except (ValueError, softgrain.NotRecorded) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return USAGE_ERROR
-    except OSError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return IO_ERROR
-    return 0
+    return carry_out("movie", arguments, lambda options: print(make(options)))
 
 
 if __name__ == "__main__":

@@ -5,10 +5,9 @@ from pathlib import Path
 
 import softgrain
 from softgrain import plot
-from softgrain.options import parse
+from softgrain.verb import USAGE_ERROR, carry_out
 
 KINDS_OF_DIE = ("die", "heckel", "kawakita")
-USAGE_ERROR, IO_ERROR = 2, 4  # exit codes, those of the program `softgrain`
 
 
 def draw(options):
@@ -67,17 +66,12 @@ def distinct_names(runs):
 
 
 def main(arguments=None):
-    options = parse("plot", arguments)
-    try:
+    def draw_and_tell(options):
         paths = draw(options)
-    except ValueError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return USAGE_ERROR
-    except OSError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return IO_ERROR
-    print(*paths, sep="\n")
-    return 0 if paths else USAGE_ERROR
+        print(*paths, sep="\n")
+        return 0 if paths else USAGE_ERROR
+
+    return carry_out("plot", arguments, draw_and_tell)
 
 
 if __name__ == "__main__":
