@@ -5,13 +5,13 @@ import os
 import sys
 from pathlib import Path
 
-from .. import NotRecorded, plot
+from .. import plot
 from ..case import Case, RunFailed
 from ..compare import Comparison, draw_comparison, read_measured
-from ..options import parse
+from ..verb import carry_out
 from . import Problem, estimate, report
 
-USAGE_ERROR, IO_ERROR, INCOMPLETE, STOPPED = 2, 4, 5, 130  # exit codes, those of the program `softgrain`
+INCOMPLETE, STOPPED = 5, 130  # exit codes, those of the program `softgrain`
 
 
 def case_of(options) -> Case:
@@ -45,22 +45,19 @@ def fit(options, command):
 
 
 def main(arguments=None):
-    options = parse("fit", arguments)
     words = ["softgrain", "fit", *(sys.argv[2:] if arguments is None else map(str, arguments))]
-    try:
-        return fit(options, words)
-    except KeyboardInterrupt:
-        print("stopped; called again, the fit goes on", file=sys.stderr)
-        return STOPPED
-    except RunFailed as failed:
-        print(f"error: {failed}", file=sys.stderr)
-        return failed.code
-    except (ValueError, NotRecorded) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return USAGE_ERROR
-    except OSError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return IO_ERROR
+
+    def fit_until_stopped(options):
+        try:
+            return fit(options, words)
+        except KeyboardInterrupt:
+            print("stopped; called again, the fit goes on", file=sys.stderr)
+            return STOPPED
+        except RunFailed as failed:
+            print(f"error: {failed}", file=sys.stderr)
+            return failed.code
+
+    return carry_out("fit", arguments, fit_until_stopped)
 
 
 if __name__ == "__main__":

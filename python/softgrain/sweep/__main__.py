@@ -5,11 +5,11 @@ import shlex
 import sys
 
 from .. import NotRecorded
-from ..options import parse
+from ..verb import carry_out
 from . import execute, scripts, table
 from .plan import PlanError, read_plan
 
-USAGE_ERROR, RUNS_FAILED, IO_ERROR = 2, 3, 4  # exit codes, those of the program `softgrain`
+RUNS_FAILED = 3  # exit code, that of the program `softgrain`
 
 
 def list_runs(plan):
@@ -75,8 +75,8 @@ def collect(plan, columns):
         print(f"softgrain sweep: no figure: {missing}", file=sys.stderr)
 
 
-def main(arguments=None):
-    options = parse("sweep", arguments)
+def plan_or_carry_out(options):
+    """What the options ask for: the list, one run, a script, or all runs."""
     program = os.environ.get("SOFTGRAIN_PROGRAM", "softgrain")
     try:
         plan = read_plan(program, options.case, options.set, options.vary, options.output)
@@ -92,12 +92,10 @@ def main(arguments=None):
     except execute.RefusedCase as error:
         print(f"error: {error}", file=sys.stderr)
         return error.code
-    except ValueError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return USAGE_ERROR
-    except OSError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return IO_ERROR
+
+
+def main(arguments=None):
+    return carry_out("sweep", arguments, plan_or_carry_out)
 
 
 if __name__ == "__main__":
