@@ -3,16 +3,17 @@
 #include "softgrain/core/error.hpp"
 
 namespace softgrain {
-
 namespace {
 
-void check_motion(double motion, double smallest_radius, std::string_view what) {
-  if (!(motion <= smallest_radius / 10))
-    throw NumericalError(
-        fmt::format("{} moves by {:.3g} m in a step, more than a tenth of the smallest radius {:.3g} m; use "
-                    "a smaller time "
-                    "step or a slower {}",
-                    what, motion, smallest_radius, what.substr(0, what.find(' '))));
+/// Of what a step may move: a tenth of the smallest radius. Not true of what is no number.
+bool is_small(double motion, double smallest_radius) { return motion <= smallest_radius / 10; }
+
+[[noreturn]] void refuse_motion(double motion, double smallest_radius, std::string_view what,
+                                const std::string& number) {
+  throw NumericalError(fmt::format(
+      "{}{} moves by {:.3g} m in a step, more than a tenth of the smallest radius {:.3g} m; use a "
+      "smaller time step or a slower {}",
+      what, number, motion, smallest_radius, what));
 }
 
 }  // namespace
@@ -20,9 +21,11 @@ void check_motion(double motion, double smallest_radius, std::string_view what) 
 void check_wall_motion(const Box<2>& box, double dt, double smallest_radius) {
   const std::vector<Wall<2>>& walls = box.walls;
   const Mat<2>& rate = box.cell.rate;
-  if (box.cell.any()) check_motion(dt * std::sqrt(contract(rate, rate)), smallest_radius, "cell");
+  if (const double motion = dt * std::sqrt(contract(rate, rate)); !is_small(motion, smallest_radius))
+    refuse_motion(motion, smallest_radius, "cell", "");
   for (std::size_t a = 0; a < walls.size(); ++a) {
-    check_motion(dt * norm(walls[a].velocity), smallest_radius, fmt::format("wall {}", a));
+    if (const double motion = dt * norm(walls[a].velocity); !is_small(motion, smallest_radius))
+      refuse_motion(motion, smallest_radius, "wall", fmt::format(" {}", a));
     for (std::size_t b = 0; b < a; ++b)
       if (dot(walls[a].normal, walls[b].normal) < -0.5 &&
           !(dot(walls[a].point - walls[b].point, walls[b].normal) > 0))
