@@ -109,8 +109,7 @@ Observation Simulation::observe() const {
 }
 
 /// Bodies with their velocities over L x_c, at which a periodic cell carries their grains.
-Bodies Simulation::peculiar_bodies() const {
-  Bodies bodies = model_->bodies();
+Bodies Simulation::over_cell(Bodies bodies) const {
   if (!box_.cell.any()) return bodies;
   const Mat<2> L = box_.cell.gradient();
   const std::vector<Vec<2>> centre = model_->centres();
@@ -123,7 +122,7 @@ Bodies Simulation::peculiar_bodies() const {
 Energies Simulation::energies() const {
   Energies energies = model_->energies();
   if (!box_.cell.any()) return energies;
-  const Bodies bodies = model_->bodies(), peculiar = peculiar_bodies();
+  const Bodies bodies = model_->bodies(), peculiar = over_cell(bodies);
   double carried = 0;
   for (std::size_t i = 0; i < bodies.mass.size(); ++i)
     carried +=
@@ -139,7 +138,7 @@ PackingMeasures Simulation::packing() const {
   const std::vector<Vec<2>> centre = model_->centres();
   const std::vector<ContactPoint> contacts = model_->contacts();
   const Outlines outlines = model_->outlines();
-  const Bodies bodies = peculiar_bodies();
+  const Bodies bodies = over_cell(model_->bodies());
   return measure_packing({.width = box_.width(),
                           .height = box_.height(),
                           .radius = radius,

@@ -81,7 +81,7 @@ class Simulation final {
   void apply_settings() { model_->set(initial_.then(loading_.settings())); }
   StepFelt felt_in(const StepReport& report) const;
   PackingMeasures packing() const;
-  Bodies peculiar_bodies() const;
+  Bodies over_cell(Bodies bodies) const;
   double largest_rate() const;
 
   std::unique_ptr<Model> model_;
