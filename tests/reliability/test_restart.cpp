@@ -11,6 +11,18 @@ bool same_runs(const Workshop& workshop, const std::string& a, const std::string
   return workshop.last_hash(a) == workshop.last_hash(b) && workshop.series(a) == workshop.series(b);
 }
 
+/// The run "whole", cut off after the first `kept` snapshots and resumed, ends as it did: kept = first ..
+/// end - 1.
+void check_resumed_from(const Workshop& workshop, std::size_t first, std::size_t end) {
+  for (std::size_t kept = first; kept < end; ++kept) {
+    const std::string part = "part" + std::to_string(kept);
+    CAPTURE(part);
+    copy_cut_off(workshop, "whole", part, kept);
+    CHECK(workshop.softgrain({"resume", part, "-q", "-j", "3"}).exit_code == 0);
+    CHECK(same_runs(workshop, part, "whole"));
+  }
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -24,13 +36,7 @@ TEST_CASE(
     const std::size_t snapshots = workshop.snapshots("whole").size();
     REQUIRE(snapshots == 7 + tiny.turns);  // the first state, six even shares of the run, and the turns
     // five and six: one is the state at a turn, the other in the middle of unloading
-    for (std::size_t kept = torture() ? 1 : 5; kept < (torture() ? snapshots : 7); ++kept) {
-      const std::string part = "part" + std::to_string(kept);
-      CAPTURE(part);
-      copy_cut_off(workshop, "whole", part, kept);
-      CHECK(workshop.softgrain({"resume", part, "-q", "-j", "3"}).exit_code == 0);
-      CHECK(same_runs(workshop, part, "whole"));
-    }
+    check_resumed_from(workshop, torture() ? 1 : 5, torture() ? snapshots : 7);
   }
 }
 
@@ -55,13 +61,7 @@ TEST_CASE("a run whose stages set friction, tolerance and damping goes on from a
     REQUIRE(whole.exit_code == 0);
     const std::size_t snapshots = workshop.snapshots("whole").size();
     REQUIRE(snapshots == 9);
-    for (std::size_t kept = 1; kept < snapshots; ++kept) {
-      const std::string part = "part" + std::to_string(kept);
-      CAPTURE(part);
-      copy_cut_off(workshop, "whole", part, kept);
-      CHECK(workshop.softgrain({"resume", part, "-q", "-j", "3"}).exit_code == 0);
-      CHECK(same_runs(workshop, part, "whole"));
-    }
+    check_resumed_from(workshop, 1, snapshots);
   }
 }
 
@@ -87,13 +87,7 @@ TEST_CASE(
     CHECK(same_runs(workshop, "on4", "whole"));
     const std::size_t snapshots = workshop.snapshots("whole").size();
     REQUIRE(snapshots >= 4);
-    for (std::size_t kept = 1; kept < snapshots; ++kept) {
-      const std::string part = "part" + std::to_string(kept);
-      CAPTURE(part);
-      copy_cut_off(workshop, "whole", part, kept);
-      CHECK(workshop.softgrain({"resume", part, "-q", "-j", "3"}).exit_code == 0);
-      CHECK(same_runs(workshop, part, "whole"));
-    }
+    check_resumed_from(workshop, 1, snapshots);
   }
 }
 
