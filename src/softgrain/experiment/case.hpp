@@ -99,7 +99,9 @@ struct Case {
     double hold = 0;                  ///< rest of the wall at each turn and at the end [s]
     double hold_stress = 0;           ///< sigma that walls keep for `hold` before the end [Pa]; 0: none
     double confining_stress = 0;      ///< of the side walls of a biaxial path [Pa]
-    double shear_rate = 0;            ///< of a periodic cell [1/s]
+    double shear_rate = 0;            ///< of a periodic cell [1/s]; 0: quasi-static
+    double inertial_number = 1e-3;    ///< of what is quasi-static
+    bool quasi_static = false;        ///< whether the case leaves a speed or a rate to it; no key
     double max_shear = 1;             ///< shear strain at the end
     double rest = 0;     ///< kinetic over stored energy that ends the rest of a relaxation; 0: none
     bool eject = false;  ///< whether the side walls of a die open after unloading, until they bear nothing

@@ -57,6 +57,7 @@ struct Drive {
   double amplitude = 0;  ///< of the wave: a strain, or a stress [Pa]; 0: none
   double period = 0;     ///< of the wave [s]
   Wave wave = Wave::sine;
+  bool quasi_static = false;  ///< the case leaves the rate to its inertial number
 
   /// What it keeps or swings to at a time of its stage.
   double target(double time) const;

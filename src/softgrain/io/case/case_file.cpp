@@ -6,6 +6,7 @@
 #include <cctype>
 #include <optional>
 
+#include "softgrain/experiment/advice.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/sample.hpp"
@@ -39,6 +40,7 @@ class CaseReader {
       const PlacedLines lines = place_grains(forms_, draft_, sources_);
       forms_.finish_kinds();
       draft_.the_case = complete_sample(draft_.the_case);
+      take_quasi_static_speeds();
       take_speed_of_stages();
       check_placement(draft_, lines);
       if (is_to_run) check_relations();
@@ -186,6 +188,21 @@ class CaseReader {
     draft_.notes.push_back(fmt::format("note: mpm.time_step is an old name{}; write time.step = {}",
                                        counts ? "" : " and has no effect here",
                                        written_value(now, *find_key("time.step"))));
+  }
+
+  /// What is left to the inertial number.
+  void take_quasi_static_speeds() {
+    Case& c = draft_.the_case;
+    const bool shears = scope::shearing.covers(c) && c.loading.shear_rate == 0;
+    c.loading.quasi_static = shears || c.loading.wall_velocity == 0;
+    for (Stage& stage : c.stages)
+      for (Drive& drive : stage.drives) {
+        if (!drive.quasi_static) continue;
+        drive.value = quasi_static_rate(c);
+        c.loading.quasi_static = true;
+      }
+    if (shears) c.loading.shear_rate = quasi_static_rate(c);
+    if (c.loading.wall_velocity == 0) c.loading.wall_velocity = quasi_static_velocity(c);
   }
 
   /// Walls go as fast as their stages say: the time step follows it, and averages of the stress.

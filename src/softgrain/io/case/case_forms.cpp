@@ -79,7 +79,7 @@ std::vector<FormKey> all_forms() {
 void add_forms_of(Part part, std::string_view walls, std::vector<FormKey>& all) {
   const Range any, positive{.low = 0, .without_low = true}, not_negative{.low = 0};
   const std::string name = fmt::format("stage.{}", name_of(part));
-  all.push_back(word(name, {"rest"}, {}, walls));
+  all.push_back(word(name, {"rest", "quasi-static"}, {}, walls));
   all.push_back(number(name + ".velocity", "m/s", any, "at which they come together, half by each of a pair; below 0: apart"));
   all.push_back(number(name + ".rate", "1/s", any, "of the strain, compression positive"));
   all.push_back(number(name + ".stress", "MPa", positive, "that they keep, compression positive, of a pair in the mean"));
@@ -96,7 +96,7 @@ void add_forms_of(Part part, std::string_view walls, std::vector<FormKey>& all) 
 // clang-format off
 void add_shear(std::vector<FormKey>& all) {
   const Range any, positive{.low = 0, .without_low = true};
-  all.push_back(word("stage.xy", {"rest"}, {}, "shear of a cell that is periodic in x and y; \"rest\" where nothing is said of it"));
+  all.push_back(word("stage.xy", {"rest", "quasi-static"}, {}, "shear of a cell that is periodic in x and y; \"rest\" where nothing is said of it"));
   all.push_back(number("stage.xy.rate", "1/s", any, "of the shear strain; above 0 what lies higher goes to +x"));
   all.push_back(number("stage.xy.stress", "MPa", any, "shear stress that the cell keeps, -stress_xy of the columns: it has the sign of the shear that it brings about"));
   all.push_back(number("stage.xy.speed", "m/s", positive, "of the upper end against the lower one, at most; left out: loading.wall_velocity"));

@@ -156,8 +156,6 @@ std::string path_incomplete(const Case& c) {
   };
   if (scope::confining.covers(c) && c.loading.confining_stress == 0)
     return needs("confining_stress", "the stress that is kept");
-  if (scope::shearing.covers(c) && c.loading.shear_rate == 0)
-    return needs("shear_rate", "how fast the cell shears");
   if (scope::is_path(c, LoadingPath::die) && c.loading.max_stress == 0)
     return needs("max_stress", "the stress to which the top wall presses");
   if (scope::relaxing.covers(c) && c.loading.hold == 0) return needs("hold", "how long the walls rest");

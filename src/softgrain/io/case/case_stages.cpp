@@ -74,13 +74,17 @@ std::optional<Drive> drive_of(const StageText& text, Part part) {
       drive.control = manner.control;
       (manner.control == Control::strain ? drive.amplitude : drive.value) = *value;
     }
-  const bool rests = !text.word(name).empty();
-  if (rests) said.push_back("\"rest\"");
+  if (const std::string word = text.word(name); !word.empty()) {
+    said.push_back(fmt::format("\"{}\"", word));
+    drive.quasi_static = word != "rest";
+    if (drive.quasi_static) drive.control = Control::rate, drive.value = 1;  // until the sample is known
+  }
   if (said.size() > 1)
     throw StageFault{
         place_of(text, name),
-        fmt::format("{} takes one of velocity, rate, stress, strain_amplitude and \"rest\"; got {}", name,
-                    fmt::join(said, " and "))};
+        fmt::format(
+            "{} takes one of velocity, rate, stress, strain_amplitude, \"quasi-static\" and \"rest\"; got {}",
+            name, fmt::join(said, " and "))};
   if (const auto amplitude = text.number(name + ".stress_amplitude")) drive.amplitude = *amplitude;
   drive.period = text.number(name + ".period").value_or(0);
   drive.speed = text.number(name + ".speed").value_or(0);

@@ -112,7 +112,7 @@ std::vector<Key> all_keys() {
       KEY(solver.precision, "", its_words(),
           "of impulses and velocities within the sweeps of a bpm step; double for tolerances below 1e-11", with_bpm),
 
-      KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top wall; isotropic, biaxial: of opposite walls towards each other, half by each; of walls that keep a stress: at most; stages: left out, the fastest of theirs"),
+      KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top wall; isotropic, biaxial: of opposite walls towards each other, half by each; of walls that keep a stress: at most; stages: left out, the fastest of theirs; quasi-static: as loading.inertial_number says", everywhere, "quasi-static"),
       KEY(loading.max_strain, "", between(0, 3),
           "strain at the end: eps = -ln(1 - d/R), d half the travel of the wall; in a box: eps = ln(h_start/h); die: at "
           "which max_stress must be reached", with_short_path),
@@ -131,7 +131,10 @@ std::vector<Key> all_keys() {
           "vertical stress at which the walls leave their path: those that move keep it for loading.hold, which ends the run; "
           "isotropic: xx and yy each; 0: none (in a box)", packing_turning),
       KEY(loading.confining_stress, "MPa", at_least(0), "that the side walls keep (biaxial), that the periodic cell keeps (shear)", confining),
-      KEY(loading.shear_rate, "1/s", at_least(0), "of the shear strain (shear)", shearing),
+      KEY(loading.shear_rate, "1/s", positive(), "of the shear strain; quasi-static: as loading.inertial_number says (shear)", shearing, "quasi-static"),
+      KEY(loading.inertial_number, "", positive(),
+          "I of a speed or rate that is \"quasi-static\", at the stress that the loading names, in a box a hundredth of "
+          "the grains' own where it names none; one grain: at its own: E, the yield stress or sigma_I", quasi_static),
       KEY(loading.max_shear, "", positive(), "shear strain at the end (shear)", shearing),
       KEY(loading.rest, "", at_least(0), "kinetic over stored energy, below which the rest ends before loading.hold is over; 0: none (relaxation)", relaxing),
       KEY(loading.eject, "", anything(), "whether the side walls go apart after unloading until they bear nothing, then the top wall again, and all rest for loading.hold (die)", die),

@@ -74,6 +74,8 @@ inline constexpr Scope bpm_to_an_overlap{"on bpm in a box, on compaction, isotro
                                          [](const Case& c) { return is_bpm(c) && to_a_fraction.covers(c); }};
 inline constexpr Scope biaxial{"on biaxial paths",
                                [](const Case& c) { return is_path(c, LoadingPath::biaxial); }};
+inline constexpr Scope quasi_static{"where a speed or a rate is \"quasi-static\"",
+                                    [](const Case& c) { return c.loading.quasi_static; }};
 inline constexpr Scope shearing{"on shear paths",
                                 [](const Case& c) { return is_path(c, LoadingPath::shear); }};
 inline constexpr Scope confining{"on biaxial and shear paths",

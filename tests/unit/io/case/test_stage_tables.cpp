@@ -224,9 +224,6 @@ until = { stress_xy = "-10 kPa", time = "1 ms" }
   CHECK(
       mentions(refusal("[experiment]\nloading = 'shear'\n[loading]\nconfining_stress = 1\nshear_rate = 1\n"),
                "it needs box.x and box.y \"periodic\""));
-  CHECK(
-      mentions(refusal("[experiment]\nloading = 'shear'\n" + periodic + "[loading]\nconfining_stress = 1\n"),
-               "needs loading.shear_rate > 0"));
   CHECK(mentions(refusal("[experiment]\nloading = 'die'\n" + periodic + "[loading]\nmax_stress = 1\n"),
                  "\"die\" needs walls"));
   CHECK(mentions(refusal(periodic + "[[stage]]\nxy = { velocity = 1 }\nuntil = { time = 1 }\n"),
