@@ -18,7 +18,7 @@ struct Press {
   double most = 0;                ///< v_most [m/s]
   double speed = 0;               ///< v [m/s], > 0: the walls come together
   double mean_force = 0;          ///< sum_w share_w f_w, its mean over tau [N/m]
-  double waiting = 0;             ///< t for which that has been on the same side of F [s]
+  double waiting = 0;             ///< t for which that has been far from F on the same side [s]
 
   /// tau = 2 m/Z [s]
   double time() const { return 2 * mass / damper; }

@@ -156,6 +156,37 @@ TEST_CASE("a held stress is kept, in grains soft and stiff, and never far exceed
   CHECK(simulation->outcome().completed);
 }
 
+TEST_CASE("a stress that is raised is reached with less than 5 % too much, by walls and by a cell") {
+  const auto keep = [](double stress, double time) {
+    return Stage{.drives = {{.part = Part::yy, .control = Control::stress, .value = stress},
+                            {.part = Part::xx, .control = Control::stress, .value = stress}},
+                 .until = {.time = time}};
+  };
+  Stage press{.drives = {{.part = Part::yy, .control = Control::velocity, .value = 0.5},
+                         {.part = Part::xx, .control = Control::velocity, .value = 0.5}}};
+  press.until.stress[0] = 2e5;
+  for (const bool is_cell : {false, true}) {
+    CAPTURE(is_cell);
+    Case c = soft_packing(LoadingPath::stages);
+    c.sample.grains = 20;
+    c.loading.wall_velocity = 0.5;
+    c.stages = {press, keep(2e5, 4e-3), keep(7e5, 2e-3)};
+    if (is_cell) c.box.x = c.box.y = BoxEnd::periodic;
+    const auto simulation = create_simulation(c);
+    double largest = 0, last = 0;
+    while (!simulation->finished()) {
+      const double began = simulation->time();
+      simulation->step();
+      const Box<2>& box = simulation->box();
+      last = (box.outward_impulse(bottom_wall) + box.outward_impulse(top_wall)) /
+             (2 * (simulation->time() - began) * box.width());
+      largest = std::max(largest, last);
+    }
+    CHECK(last == doctest::Approx(7e5).epsilon(0.01));
+    CHECK(largest < 1.05 * 7e5);
+  }
+}
+
 TEST_CASE("walls that keep a stress go on from a checkpoint bit for bit") {
   Case soft = soft_packing(LoadingPath::isotropic), bonded = bonded_packing(LoadingPath::compaction);
   soft.loading.hold_stress = bonded.loading.hold_stress = 2e5;
