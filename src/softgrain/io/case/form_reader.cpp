@@ -58,7 +58,7 @@ std::string unknown_key(const std::string& name) {
 }
 
 std::string quoted(const std::vector<std::string>& words) {
-  return fmt::format("\"{}\"", fmt::join(words, "\", \""));
+  return fmt::format("{}\"{}\"", words.size() > 1 ? "one of " : "", fmt::join(words, "\", \""));
 }
 
 std::string word_in(const TomlValue& value) {
