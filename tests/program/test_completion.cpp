@@ -54,6 +54,9 @@ TEST_CASE("bash completes values where they can be listed, also behind =, at whi
   CHECK(bash_offers("run case.toml --set output.vtk = t") == "true\n");
   CHECK(bash_offers("sweep case.toml --column z_no") == "z_no_rattlers\n");
   CHECK(bash_offers("reproduce fig3 --scale q") == "quick\n");
+  CHECK(bash_offers("sweep stat") == "status\n");
+  CHECK(bash_offers("sweep case.toml --over phi") == "phi\nphi_0\n");
+  CHECK(bash_offers("sweep case.toml --ret") == "--retry-failed\n");
   CHECK(bash_offers("completion fi") == "fish\n");
 }
 
