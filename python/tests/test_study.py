@@ -15,6 +15,7 @@ import numpy as np
 from softgrain import NotRecorded
 from softgrain.sweep import PlanError, read_plan, read_plan_file, scripts
 from softgrain.sweep.status import duration, status_text
+from softgrain.sweep.table import values_of
 from softgrain.sweep.values import read_range
 from stand_in import PROGRAM, Temporary
 
@@ -201,6 +202,15 @@ class Curves(Studies):
         self.assertGreater(places.max(), 0.899)
         np.testing.assert_allclose([float(row["stress_top_mean[Pa]"]) for row in rows], 1000 * (places - 0.6) + 10, atol=1e-4)
         np.testing.assert_allclose([float(row["stress_top_deviation[Pa]"]) for row in rows], 10, atol=1e-4)
+
+
+class Values(unittest.TestCase):
+    def test_a_key_that_the_resolved_case_lacks_keeps_what_was_written(self):
+        class Kinds:
+            case = {"kind": [{"name": "sand", "number": 3}], "contact": {"friction": 0.5}}
+
+        plan = read_plan("", "", [], ["kind.sand.share=1", "kind.sand.law.name=ogden", "contact.friction=0.50"], "")
+        self.assertEqual(values_of(plan.runs[0], Kinds), [1.0, "ogden", 0.5])
 
 
 class Interrupted(Studies):
