@@ -10,7 +10,7 @@ from ..verb import carry_out
 from . import execute, plan_file, scripts, table
 from .curves import write_curves
 from .plan import PlanError, read_plan
-from .state import DOUBTFUL, FAILED, RUNNING, WAITING, condition, doubts, record
+from .state import DONE, DOUBTFUL, FAILED, RUNNING, WAITING, condition, doubts, record
 from .status import status_text
 
 RUNS_FAILED = 3  # exit code, that of the program `softgrain`
@@ -24,7 +24,8 @@ def plan_of(options, program):
     described = [name for name in ("set", "vary", "range", "design") if getattr(options, name)]
     if not (options.vary or options.design) or plan_file.is_plan(path):
         if described:
-            raise PlanError(f"--{described[0]}: {path} is no case to be varied, but a plan, or should be one; write it there")
+            raise PlanError(f"--{described[0]}: {path} is no case to be varied, but a plan, or should be one; "
+                            "write it there")
         return plan_file.read_plan_file(program, path, options.output)
     if not options.output:
         raise PlanError(f"where are the runs of {path} to go? -o DIR")
@@ -32,9 +33,9 @@ def plan_of(options, program):
 
 
 def keep_plan(plan, options):
-    """The plan in the sweep's own folder, for `status` and for other machines; one that was written there by hand stays."""
-    own = plan.folder / plan_file.NAME
-    given = Path(options.case) / plan_file.NAME if Path(options.case).is_dir() else Path(options.case)
+    """The plan in the sweep's own folder, for `status` and for other machines; one that was read there stays."""
+    own, given = plan.folder / plan_file.NAME, Path(options.case)
+    given = given / plan_file.NAME if given.is_dir() else given
     if not (own.exists() and given.exists() and own.samefile(given)):
         plan_file.write_plan_file(plan)
 
@@ -61,7 +62,8 @@ def become_run(plan, run, options):
         print(f"{run.name}: done before", file=sys.stderr)
         return execute.NOT_TRUSTED if doubts(directory) else 0
     if parts.failed:
-        print(f"error: {run.name} failed before: {record(directory).get('message', '')}\n--retry-failed tries it again", file=sys.stderr)
+        print(f"error: {run.name} failed before: {record(directory).get('message', '')}\n--retry-failed tries it again",
+              file=sys.stderr)
         return RUNS_FAILED
     if options.max_fails is not None and (failed := failures(plan)) > options.max_fails:
         print(f"error: gave up, {failed} runs have failed", file=sys.stderr)
@@ -82,11 +84,13 @@ def carry_out_runs(plan, runs, options, jobs):
     if parts.done:
         print(f"{len(parts.done)} of {len(runs)} runs: done before", file=sys.stderr)
     if parts.failed:
-        print(f"{len(parts.failed)} of {len(runs)} runs: failed before; --retry-failed tries them again", file=sys.stderr)
+        print(f"{len(parts.failed)} of {len(runs)} runs: failed before; --retry-failed tries them again",
+              file=sys.stderr)
     (plan.folder / "runs").mkdir(parents=True, exist_ok=True)
     before = len(parts.failed) if len(runs) == len(plan.runs) else failures(plan)
     most_failed = None if options.max_fails is None else options.max_fails - before
-    pool = execute.Pool(plan, jobs, most_failed, lambda run: condition(plan.directory(run)) in (execute.DONE, DOUBTFUL, RUNNING))
+    taken = (DONE, DOUBTFUL, RUNNING)
+    pool = execute.Pool(plan, jobs, most_failed, lambda run: condition(plan.directory(run)) in taken)
     failed = {run.name for run in parts.failed} | pool.carry_out(parts.to_do).keys()
     return told(plan, runs, failed, pool)
 
@@ -97,8 +101,8 @@ def told(plan, runs, failed, pool):
     doubtful = [name for name, how in found.items() if how == DOUBTFUL]
     elsewhere = [name for name, how in found.items() if how == RUNNING]
     if doubtful:
-        print(f"warning: {len(doubtful)} of {len(runs)} runs are doubtful, `softgrain info` tells why: {', '.join(doubtful)}",
-              file=sys.stderr)
+        print(f"warning: {len(doubtful)} of {len(runs)} runs are doubtful, `softgrain info` tells why: "
+              f"{', '.join(doubtful)}", file=sys.stderr)
     if elsewhere:
         print(f"{len(elsewhere)} of {len(runs)} runs go on elsewhere; call again when they are done", file=sys.stderr)
     if failed:
@@ -136,13 +140,14 @@ def write_scripts(plan, options):
     execute.sort_runs(plan, plan.runs, execute.cores())  # refuses a wrong case here, not in the queue
     keep_plan(plan, options)
     here = [plan.program, "sweep", str(plan.folder.resolve() / plan_file.NAME)]
-    task = [*here, *(["--retry-failed"] if options.retry_failed else []), *(["--max-fails", str(options.max_fails)] if options.max_fails is not None else [])]
+    retry = ["--retry-failed"] if options.retry_failed else []
+    task = here + retry + ([] if options.max_fails is None else ["--max-fails", str(options.max_fails)])
     if options.slurm:
         pack = options.pack or 1
         task += ["--pack", str(pack)] if pack > 1 else []
         files = scripts.slurm_scripts(plan, task, pack, options.throttle, scripts.max_array_size())
     else:
-        collecting = [*here, *(f"--column={name}" for name in options.column), *([f"--over={options.over}"] if options.over != "strain" else [])]
+        collecting = [*here, *(f"--column={name}" for name in options.column), f"--over={options.over}"]
         files = {"Snakefile": scripts.snakefile(plan, task, collecting)}
     for name, text in files.items():
         plan_file.write_whole(plan.folder / name, text)
@@ -161,13 +166,16 @@ def sweep(options):
             print(status_text(plan_of(options, program)))
             return 0
         if options.dir:
-            raise PlanError(f"'{options.dir}' is a word too many: softgrain sweep CASE, softgrain sweep PLAN or softgrain sweep status DIR")
+            raise PlanError(f"'{options.dir}' is a word too many: softgrain sweep CASE, softgrain sweep PLAN or "
+                            "softgrain sweep status DIR")
         plan = plan_of(options, program)
         if options.list:
             return list_runs(plan)
         if options.index is not None:
             runs = task_of(plan, options.index, options.pack or 1)
-            return become_run(plan, *runs, options) if not options.pack else carry_out_runs(plan, runs, options, options.jobs or 1)
+            if not options.pack:
+                return become_run(plan, *runs, options)
+            return carry_out_runs(plan, runs, options, options.jobs or 1)
         if options.slurm or options.snakemake:
             return write_scripts(plan, options)
         code = carry_out_runs(plan, plan.runs, options, options.jobs or execute.cores())

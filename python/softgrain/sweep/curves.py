@@ -7,8 +7,8 @@ from .plan import SEED
 from .table import values_of, write_table
 
 PLACES = 101  # of curves.csv, over all runs
-USUAL_COLUMNS = ("strain", "phi_0", "phi", "z", "z_no_rattlers", "stress_top", "stress_bottom", "stress_xx", "stress_yy",
-                 "dissipation")
+USUAL_COLUMNS = ("strain", "phi_0", "phi", "z", "z_no_rattlers", "stress_top", "stress_bottom", "stress_xx",
+                 "stress_yy", "dissipation")
 
 
 def groups_of(plan, opened):
@@ -28,7 +28,7 @@ def curve_of(run, column, over):
 
 
 def mean_curve(runs, column, over="strain", places=None):
-    """(abscissa, mean, standard deviation) over the runs, where all of them have been; `places`: as many as lie there."""
+    """(abscissa, mean, standard deviation) over the runs, where all of them have been; of `places` those there."""
     curves = [curve_of(run, column, over) for run in runs]
     low, high = max(along[0] for along, _ in curves), min(along[-1] for along, _ in curves)
     if places is None:
@@ -40,7 +40,7 @@ def mean_curve(runs, column, over="strain", places=None):
 
 def write_curves(plan, opened, columns, over, path):
     """curves.csv: for each group its values in SI and the number of its runs, then the abscissa, at places that all
-    groups share, and mean and standard deviation over the seeds of each column. False: there is nothing to write yet."""
+    groups share, and mean and standard deviation over the seeds of each column. False: nothing to write yet."""
     groups = groups_of(plan, opened)
     runs = [run for members in groups.values() for _, run in members]
     columns = [name for name in (columns or USUAL_COLUMNS) if name != over and all(name in run.series for run in runs)]

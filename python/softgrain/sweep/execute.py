@@ -43,8 +43,9 @@ def sort_runs(plan, runs, jobs, retry_failed=False):
         found = list(pool.map(lambda run: _checked(plan, run), runs))
     parts = Sorted([], [], [], [])
     for run, how in zip(runs, found):
-        part = {DONE: parts.done, DOUBTFUL: parts.done, RUNNING: parts.running, FAILED: parts.failed}.get(how, parts.to_do)
-        (parts.to_do if how == FAILED and retry_failed else part).append(run)
+        part = {DONE: parts.done, DOUBTFUL: parts.done, RUNNING: parts.running,
+                FAILED: parts.to_do if retry_failed else parts.failed}.get(how, parts.to_do)
+        part.append(run)
     return parts
 
 
@@ -60,7 +61,7 @@ def _checked(plan, run):
     try:
         stored = tomllib.loads((directory / "case.toml").read_text())
     except ValueError as error:
-        raise RefusedCase(f"{directory / 'case.toml'} is damaged: {error}; remove it, and it is written again", 4) from error
+        raise RefusedCase(f"{directory}/case.toml is damaged: {error}; remove it: it is written again", 4) from error
     if _physics(stored) != _physics(json.loads(checked.stdout)["case"]):
         raise RefusedCase(f"{directory} holds a run of another case; choose another directory with -o")
     return how

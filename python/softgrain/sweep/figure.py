@@ -42,7 +42,7 @@ def draw_sweep(plan, opened, columns, over="strain"):
             _draw_points(axes, groups, key, name)
         if not places:
             _draw_ends(ends[0], members, numeric, [key for key in plan.keys if key != SEED], name)
-    if len(groups) <= MOST_LABELS:
+    if len(groups) <= MOST_LABELS and not plan.points:  # points have too many digits for a legend
         panels[0, 0].legend(fontsize=6)
     return figure
 
@@ -65,7 +65,8 @@ def _draw_points(axes, groups, key, column):
     """A point for each group: the mean of the last values over one number of the design."""
     for members in groups.values():
         ends = [run.series[column][-1] for _, run in members]
-        axes.errorbar(value_of(*members[0], key), np.mean(ends), np.std(ends), color=RUN_COLOURS[0], marker="o", ms=2.5, capsize=1)
+        axes.errorbar(value_of(*members[0], key), np.mean(ends), np.std(ends), color=RUN_COLOURS[0], marker="o",
+                      ms=2.5, capsize=1)
     axes.set_xlabel(key)
     axes.set_ylabel("last " + _name(column, members[0][1]))
 

@@ -35,7 +35,7 @@ class Plan:
     fixed: tuple  # key=value of --set, the same in all runs
     varied: dict  # key -> values as they were written, each with each
     folder: Path
-    points: dict = field(default_factory=dict)  # key -> values, one for each point: the first of all keys, the second, ...
+    points: dict = field(default_factory=dict)  # key -> values: the first of all keys are a point, the second, ...
 
     @property
     def keys(self):

@@ -51,8 +51,9 @@ def read_plan_file(program, path, folder=None):
         varied[SEED] = _values(SEED, f"1..{seeds}" if isinstance(seeds, int) else seeds, at)
     points = {key: _list(key, value, at) for key, value in _flat(table.get("points", {}))}
     here = path.parent
-    plan = Plan(program, here / table["case"], tuple(f"{key}={_text(value)}" for key, value in _flat(table.get("set", {}))),
-                varied, Path(folder or here / table.get("output", "")), points | _design(table, at))
+    fixed = tuple(f"{key}={_text(value)}" for key, value in _flat(table.get("set", {})))
+    folder = Path(folder or here / table.get("output", ""))
+    plan = Plan(program, here / table["case"], fixed, varied, folder, points | _design(table, at))
     with told_at(f"{path}: "):
         return checked(plan)
 
@@ -109,8 +110,8 @@ def _refuse_unknown(table, at):
         known = TABLES if isinstance(value, dict) else WORDS
         if key not in known:
             near = difflib.get_close_matches(key, known, 1) or known
-            raise PlanError(f"{at(key)}'{key}' is no {'table' if isinstance(value, dict) else 'key'} of a plan; do you mean "
-                            f"{' or '.join(near)}?")
+            kind = "table" if isinstance(value, dict) else "key"
+            raise PlanError(f"{at(key)}'{key}' is no {kind} of a plan; do you mean {' or '.join(near)}?")
     for key in ("case", "output", "design"):
         if not isinstance(table.get(key, ""), str):
             raise PlanError(f"{at(key)}{key} = {table[key]}: want text in quotation marks")
@@ -145,7 +146,8 @@ def _design(table, at):
         with told_at(at(key)):
             spans[key] = read_range(key, _text(value))
     if spans and "design" not in table:
-        raise PlanError(f"{at('range')}[range] is where a design has its points, and there is none: design = \"sobol:64\"")
+        raise PlanError(f"{at('range')}[range] is where a design has its points, and there is none: "
+                        "design = \"sobol:64\"")
     with told_at(at("design")):
         return design_points(table["design"], spans) if "design" in table else {}
 

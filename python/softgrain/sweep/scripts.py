@@ -1,4 +1,4 @@
-"""Files that hand a sweep to others: a Slurm array and a Snakefile. Each task is `softgrain sweep DIR/plan.toml --index I`."""
+"""Scripts that carry out a sweep: a Slurm array, a Snakefile. A task is `softgrain sweep DIR/plan.toml --index I`."""
 
 import re
 import shlex
@@ -32,14 +32,16 @@ exit "$code"
 
 SUBMIT = """\
 #!/bin/bash
-# {count} tasks: more than one array may have here (MaxArraySize {size}), so {parts} arrays{after}. Carry out with: bash {script}
+# {count} tasks, more than one array may have here (MaxArraySize {size}): {parts} arrays{after}.
+# Carry out with: bash {script}
 set -e
 {lines}
 """
 
 SNAKEFILE = """\
 # {count} runs. Carry out with: snakemake -s {script} --cores 2
-# Exit code 5: done, but doubtful, as results.csv says. A run that was interrupted goes on from its last snapshot: what marks it as done is a file of its own.
+# Exit code 5: done, but doubtful, as results.csv says. A run that was interrupted goes on from its last snapshot: what
+# marks it as done is a file of its own.
 from pathlib import Path
 
 FOLDER = Path({folder!r})
@@ -67,7 +69,7 @@ rule results:
 
 
 def slurm_scripts(plan, words, pack, throttle, size):
-    """{file name: text}: array.sh, and where one array may not have so many tasks submit.sh; the last is what to carry out.
+    """{file name: text}: array.sh, and submit.sh where one array may not have so many tasks; the last is what to call.
 
     `words`: the command of a task, absolute. `throttle`: tasks at a time, None for as many as there is room for."""
     folder = plan.folder.resolve()
@@ -78,15 +80,18 @@ def slurm_scripts(plan, words, pack, throttle, size):
     submit = f"bash {shlex.quote(str(submit_path))}" if len(arrays) > 1 else f"sbatch {shlex.quote(str(array_path))}"
     output = str(folder).replace("%", "%%") + "/slurm-%A_%a.txt"  # % begins what Slurm replaces
     files = {"array.sh": SLURM.format(
-        count=len(plan.runs), pack=pack, submit=submit, array=arrays[0], job=_quoted(folder.name), output=_quoted(output),
-        threads='"$cpus"' if pack == 1 else "1", command=shlex.join(words) + ("" if pack == 1 else ' --jobs "$cpus"'))}
+        count=len(plan.runs), pack=pack, submit=submit, array=arrays[0], job=_quoted(folder.name),
+        output=_quoted(output), threads='"$cpus"' if pack == 1 else "1",
+        command=shlex.join(words) + ("" if pack == 1 else ' --jobs "$cpus"'))}
     if len(arrays) > 1:
         # One after another, where only so many tasks may run at a time.
         follow = ["", *['--dependency=afterany:"$job" '] * (len(arrays) - 1)] if throttle else [""] * len(arrays)
-        lines = [f"job=$(sbatch --parsable --array={array} {after}{shlex.quote(str(array_path))} {part * size})\necho \"$job\""
+        script = shlex.quote(str(array_path))
+        lines = [f"job=$(sbatch --parsable --array={array} {after}{script} {part * size})\necho \"$job\""
                  for part, (array, after) in enumerate(zip(arrays, follow))]
-        files["submit.sh"] = SUBMIT.format(count=tasks, size=size, parts=len(arrays), script=shlex.quote(str(submit_path)),
-                                           after=", one after another" if throttle else "", lines="\n".join(lines))
+        files["submit.sh"] = SUBMIT.format(
+            count=tasks, size=size, parts=len(arrays), script=shlex.quote(str(submit_path)),
+            after=", one after another" if throttle else "", lines="\n".join(lines))
     return files
 
 
@@ -108,5 +113,6 @@ def _quoted(text):
 def snakefile(plan, task_words, table_words):
     names = [run.name for run in plan.runs]
     folder = plan.folder.resolve()
-    return SNAKEFILE.format(count=len(names), folder=str(folder), command=shlex.join(task_words), table=shlex.join(table_words),
-                            names=names, script=shlex.quote(str(folder / "Snakefile")))
+    return SNAKEFILE.format(
+        count=len(names), folder=str(folder), command=shlex.join(task_words), table=shlex.join(table_words),
+        names=names, script=shlex.quote(str(folder / "Snakefile")))

@@ -29,8 +29,8 @@ def doubts(directory):
 
 
 def condition(directory):
-    """One of CONDITIONS: the state, and whether anybody is at it. Where no lock can be seen, a running one counts as killed;
-    one that lacks its case counts as stopped: `softgrain run --resume` goes on with both."""
+    """One of CONDITIONS: the state, and whether anybody is at it. Where there are no locks, a running one counts as
+    killed; one that lacks its case counts as stopped: `softgrain run --resume` goes on with both."""
     found = record(directory)
     said = found.get("state", WAITING)
     if said in (DONE, FAILED) and not (directory / "case.toml").exists():

@@ -44,8 +44,8 @@ def values_of(planned, run):
 
 
 def value_of(planned, run, key):
-    """The value of "contact.friction" in the resolved case of a run, in SI; where this has no such key, as of one kind of
-    grains, what was written, as a number if it is one."""
+    """The value of "contact.friction" in the resolved case of a run, in SI; where this has no such key, as of one kind
+    of grains, what was written, as a number if it is one."""
     written = planned.values[key]
     table, _, name = key.partition(".")
     try:

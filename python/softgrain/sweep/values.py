@@ -110,7 +110,8 @@ def read_range(key, text):
     ends, comma, word = (part.strip() for part in text.partition(","))
     found = _RANGE.match(ends)
     if not found or bool(comma) != (word == "log"):
-        raise PlanError(f"{key} = {text}: want LOW..HIGH, LOW..HIGH UNIT or LOW..HIGH,log, as in 0..0.5 or 1..100 MPa,log")
+        raise PlanError(f"{key} = {text}: want LOW..HIGH, LOW..HIGH UNIT or LOW..HIGH,log, as in 0..0.5 or "
+                        "1..100 MPa,log")
     low, high = float(found[1]), float(found[4])
     if not low < high:
         raise PlanError(f"{key} = {text}: the first end must be below the last")
