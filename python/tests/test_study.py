@@ -14,12 +14,11 @@ import numpy as np
 
 from softgrain import NotRecorded
 from softgrain.sweep import PlanError, read_plan, read_plan_file, scripts
+from softgrain.sweep.figure import draw_sweep
 from softgrain.sweep.status import duration, status_text
-from softgrain.sweep.table import values_of
+from softgrain.sweep.table import read_runs, values_of
 from softgrain.sweep.values import read_range
 from stand_in import PROGRAM, Temporary
-
-NO_SCIPY = "raise ImportError('No module named scipy')"
 
 
 class Studies(Temporary):
@@ -77,6 +76,8 @@ mpm.law = ["neo_hookean", "von_mises"]
         self.write(text, "out/plan.toml")
         self.assertEqual(self.call(self.out / "plan.toml")[0], 0)
         self.assertEqual((self.out / "plan.toml").read_text(), text)
+        code, _, err = self.sweep(frictions="0", seeds="1")
+        self.assertEqual((code, "written by hand" in err, (self.out / "plan.toml").read_text()), (2, True, text))
         self.assertEqual(len(self.results()), 2)
 
     def test_what_is_wrong_in_a_file_is_told_with_its_line(self):
@@ -159,15 +160,14 @@ class DesignsCarriedOut(Studies):
         for row in rows:
             stress = 100 * float(row["contact.friction"]) + int(row["sample.seed"])
             self.assertAlmostEqual(float(row["stress_top_last[Pa]"]), stress, places=6)
-        (self.folder / "scipy.py").write_text(NO_SCIPY)
-        environment = {**os.environ, "PYTHONPATH": str(self.folder)}
-        words = [sys.executable, PROGRAM, "sweep"]
-        status = subprocess.run([*words, "status", self.out], env=environment, capture_output=True, text=True)
-        self.assertIn("8 runs, 100.0 %", status.stdout, status.stderr)
-        again = subprocess.run([*words, *map(str, self.words("--design=lhs:4", "--range=contact.friction=0..1"))], env=environment,
-                               capture_output=True, text=True)
-        self.assertEqual(again.returncode, 2)
-        self.assertRegex(again.stderr, "needs SciPy .*apt install python3-scipy")
+        plan = read_plan_file(str(self.program), self.out / "plan.toml")
+        curves, last = draw_sweep(plan, read_runs(plan), []).axes
+        self.assertEqual((len(curves.lines), len(last.containers), last.get_xlabel()), (4, 4, "contact.friction"))
+        with unittest.mock.patch.dict(sys.modules, {"scipy": None, "scipy.stats": None}):
+            self.assertIn("8 runs, 100.0 %", self.call("status", self.out)[1])
+            code, _, err = self.sweep("--design=lhs:4", "--range=contact.friction=0..1")
+            self.assertEqual(code, 2)
+            self.assertRegex(err, "needs SciPy .*apt install python3-scipy")
 
 
 class Curves(Studies):

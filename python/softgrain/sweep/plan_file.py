@@ -15,6 +15,7 @@ from .plan import SEED, Plan, checked
 from .values import PlanError, read_range, read_values, told_at
 
 NAME = "plan.toml"
+HEADER = r"# \d+ runs\. "  # of one that a sweep keeps
 WORDS, TABLES = ("case", "output", "design", "seeds"), ("set", "vary", "range", "points")
 
 
@@ -59,8 +60,11 @@ def read_plan_file(program, path, folder=None):
 
 
 def write_plan_file(plan):
-    """FOLDER/plan.toml, unless it says the same already."""
-    folder = plan.folder.resolve()
+    """FOLDER/plan.toml. Raises PlanError where one lies that was written by hand."""
+    path, folder = plan.folder / NAME, plan.folder.resolve()
+    if path.exists() and not re.match(HEADER, path.read_text()):
+        raise PlanError(f"{path} was written by hand and would be overwritten; call softgrain sweep {path}, or choose "
+                        "another directory with -o")
     case = os.path.relpath(plan.case.resolve(), folder)
     lines = [f"# {len(plan.runs)} runs. Go on with: softgrain sweep {plan.folder}    "
              f"How far they are: softgrain sweep status {plan.folder}", f"case = {_quoted(case)}"]
@@ -68,8 +72,8 @@ def write_plan_file(plan):
     for name, table in (("set", fixed), ("points", plan.points), ("vary", plan.varied)):
         if table:
             lines += ["", f"[{name}]", *(f"{_quoted(key)} = {_toml(value)}" for key, value in table.items())]
-    write_whole(plan.folder / NAME, "\n".join(lines) + "\n")
-    return plan.folder / NAME
+    write_whole(path, "\n".join(lines) + "\n")
+    return path
 
 
 def write_whole(path, text):
