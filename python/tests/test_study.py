@@ -104,6 +104,7 @@ mpm.law = ["neo_hookean", "von_mises"]
         self.assertEqual(self.call(self.folder / "nowhere.toml")[0], 4)
         self.assertIn("-o DIR", self.call(self.folder / "case.toml", "--vary=sample.seed=1")[2])
         self.assertIn("a word too many", self.call(path, "more")[2])
+        self.assertIn("there is none: --design", self.call(self.folder / "case.toml", "--range=a.b=0..1", "-o", self.out)[2])
 
 
 class Designs(unittest.TestCase):

@@ -22,7 +22,7 @@ def plan_of(options, program):
     if path.is_dir():
         path = path / plan_file.NAME
     described = [name for name in ("set", "vary", "range", "design") if getattr(options, name)]
-    if not (options.vary or options.design) or plan_file.is_plan(path):
+    if not (options.vary or options.design or options.range) or plan_file.is_plan(path):
         if described:
             raise PlanError(f"--{described[0]}: {path} is no case to be varied, but a plan, or should be one; "
                             "write it there")
