@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 from pathlib import Path
 
 from softgrain.sweep import __main__
@@ -62,6 +63,9 @@ class Temporary(unittest.TestCase):
         self.program.write_text(STAND_IN)
         self.program.chmod(stat.S_IRWXU)
         self.out = self.folder / "out"
+        environment = unittest.mock.patch.dict(os.environ, {"SOFTGRAIN_PROGRAM": str(self.program)})
+        environment.start()
+        self.addCleanup(environment.stop)
 
     def words(self, *arguments, frictions="0,0.5", seeds="1..3"):
         return [str(self.folder / "case.toml"), "-o", str(self.out), f"--vary=contact.friction={frictions}",
@@ -74,15 +78,13 @@ class Temporary(unittest.TestCase):
     def call(self, *words):
         """The same of `softgrain sweep words`."""
         out, err = io.StringIO(), io.StringIO()
-        os.environ["SOFTGRAIN_PROGRAM"] = str(self.program)
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
             code = __main__.main([str(word) for word in words])
         return code or 0, out.getvalue(), err.getvalue()
 
     def start(self, *arguments, before=(), **values):
         """The same as a process of its own; `before` are the words of a program that starts it."""
-        environment = {**os.environ, "SOFTGRAIN_PROGRAM": str(self.program)}
-        return subprocess.Popen([*before, sys.executable, PROGRAM, "sweep", *self.words(*arguments, **values)], env=environment,
+        return subprocess.Popen([*before, sys.executable, PROGRAM, "sweep", *self.words(*arguments, **values)],
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def results(self):

@@ -373,8 +373,7 @@ class Hands(Studies):
     def test_gnu_parallel_carries_out_the_tasks(self):
         self.sweep("--slurm", frictions="0", seeds="1..2")
         words = f"seq 0 1 | parallel -j 2 {sys.executable} {PROGRAM} sweep {self.out} --index {{}}"
-        done = subprocess.run(["/bin/bash", "-c", words], capture_output=True, text=True,
-                              env={**os.environ, "SOFTGRAIN_PROGRAM": str(self.program)})
+        done = subprocess.run(["/bin/bash", "-c", words], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("2 of 2 runs: done before", self.call(self.out)[2])
 
@@ -384,7 +383,7 @@ class Hands(Studies):
             "verb, words", f"if sys.argv[1] == 'sweep':\n    os.execv('{sys.executable}', ['python3', '{PROGRAM}', *sys.argv[1:]])\nverb, words", 1))
         self.sweep("--snakemake", frictions="0", seeds="1..2")
         done = subprocess.run(["snakemake", "-q", "-s", self.out / "Snakefile", "--cores", "1"], capture_output=True, text=True,
-                              cwd=self.folder, env={**os.environ, "SOFTGRAIN_PROGRAM": str(self.program)})
+                              cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual([row["state"] for row in self.results()], ["done", "done"])
         self.assertEqual(self.calls("friction_0-seed_2"), 1)

@@ -147,7 +147,7 @@ class Sweeps(Temporary):
     def test_without_matplotlib_there_is_the_table_and_no_figure(self):
         stub = self.folder / "matplotlib.py"
         stub.write_text("raise ImportError('No module named matplotlib')")
-        environment = {**os.environ, "SOFTGRAIN_PROGRAM": str(self.program), "PYTHONPATH": str(self.folder)}
+        environment = {**os.environ, "PYTHONPATH": str(self.folder)}
         result = subprocess.run([sys.executable, PROGRAM, "sweep", *self.words()], env=environment, capture_output=True,
                                 text=True)
         self.assertEqual(result.returncode, 0)
