@@ -1,6 +1,6 @@
 # Short names for the commands of everyday work; each recipe also works typed by hand.
 .DEFAULT_GOAL := help
-.PHONY: help demo test check docs torture bench clean
+.PHONY: help demo test check docs torture gallery bench clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-7s %s\n", $$1, $$2}' Makefile
@@ -55,6 +55,11 @@ torture: ## long forms of the reliability tests, fuzzers, sanitizers, builds com
 	cmake --preset tsan
 	cmake --build --preset tsan
 	ctest --preset tsan -L unit --timeout 7200
+
+gallery: ## makes the pictures of docs/gallery anew, each by the command that stands beside it (minutes)
+	cmake --preset release
+	cmake --build --preset release
+	tools/gallery build/release/softgrain
 
 bench: ## measures the speed, ours and the peers'
 	@tools/install_dependencies.sh --with bench

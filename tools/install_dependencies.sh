@@ -33,9 +33,9 @@ pictures   python3                 softgrain plot
 pictures   python3-numpy           softgrain plot
 pictures   python3-matplotlib      softgrain plot
 pictures   python3-h5py            softgrain plot reads the snapshots
-tests      python3-scipy           tests of softgrain fit
+tests      python3-scipy           tests of softgrain fit and of designs
 tests      python3-ase             reads our extended XYZ
-fit        python3-scipy           softgrain fit, 60 MB
+fit        python3-scipy           softgrain fit, designs of softgrain sweep, 60 MB
 movie      ffmpeg                  softgrain movie writes MP4, 0.16 GB
 checks     python3                 tools/check_layers
 checks     clang-format            one format for all sources
@@ -58,6 +58,8 @@ torture    qemu-user               runs its tests here
 wasm       emscripten              the library for the browser, 0.6 GB
 cluster    slurm-wlm               a Slurm of one node for the test of sweeps
 cluster    munge                   its authentication
+cluster    parallel                GNU parallel carries out a sweep
+cluster    snakemake               Snakemake carries out a sweep, 0.7 GB
 shells     zsh                     tries its completion
 shells     fish                    tries its completion
 paraview   paraview                draws the scene of softgrain paraview, 0.7 GB

@@ -37,6 +37,7 @@ bool is_positional(const Json& option) { return !joined_names(option).starts_wit
 void add_checks(CLI::Option& added, const Json& option) {
   const std::string kind = option.value("kind", "");
   if (option.contains("choices")) take_one_of(&added, option.at("choices").get<std::vector<std::string>>());
+  if (option.contains("offers")) offer(&added, option.at("offers").get<std::vector<std::string>>());
   if (kind == "case") complete_case_path_of(added);
   if (kind == "count") added.check(CLI::Validator(at_least_one, ""));
   if (kind == "index") added.check(CLI::NonNegativeNumber);

@@ -28,7 +28,8 @@ struct OptionWords {
 struct VerbWords {
   std::string name, text;
   std::vector<OptionWords> options;
-  Words places;  ///< what its first argument may be
+  Words places;        ///< what its first argument may be
+  bool files = false;  ///< or a file
 };
 
 /// What a key of the case takes, if that can be listed.
@@ -56,7 +57,10 @@ std::vector<VerbWords> words_of(const CLI::App& app) {
       for (const std::string& name : option->get_lnames())
         words.options.push_back({name, option->get_description(), option->get_items_expected_max() > 0,
                                  choices_of_option(*option, name)});
-      if (option->get_positional() && words.places.empty()) words.places = choices_of(option);
+      if (option->get_positional() && words.places.empty()) {
+        words.places = choices_of(option);
+        words.files = !takes_only_choices(option);
+      }
     }
     verbs.push_back(std::move(words));
   }
@@ -115,7 +119,8 @@ std::string cases_of_verbs(const std::vector<VerbWords>& verbs, const char* form
   std::string cases;
   for (const VerbWords& verb : verbs)
     cases += fmt::format("    {}) {} ;;\n", verb.name,
-                         fmt::format(fmt::runtime(form), dashed_options(verb), joined(verb.places)));
+                         fmt::format(fmt::runtime(form), dashed_options(verb), joined(verb.places),
+                                     verb.files && !verb.places.empty() ? "1" : ""));
   return cases;
 }
 
@@ -132,7 +137,7 @@ std::string bash_completion(const std::vector<VerbWords>& verbs) {
   return fmt::format(
       R"(# bash completion of softgrain. In ~/.bashrc: source <(softgrain completion bash)
 _softgrain() {{
-  local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} key="" options="" places="" values=""
+  local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} key="" options="" places="" files="" values=""
   COMPREPLY=()
   if ((COMP_CWORD == 1)); then
     COMPREPLY=($(compgen -W "{names} --help --version" -- "$word"))
@@ -165,7 +170,7 @@ _softgrain() {{
   if [[ $word == -* ]]; then
     COMPREPLY=($(compgen -W "$options" -- "$word"))
   elif ((COMP_CWORD == 2)) && [[ -n $places ]]; then
-    COMPREPLY=($(compgen -W "$places" -- "$word"))
+    COMPREPLY=($(compgen ${{files:+-f}} -W "$places" -- "$word"))
   fi
 }}
 complete -o default -F _softgrain softgrain
@@ -173,7 +178,7 @@ complete -o default -F _softgrain softgrain
       fmt::arg("names", joined(names)), fmt::arg("keys", joined(names_for_set())),
       fmt::arg("key_cases", cases_of_keys("values=\"{}\"")),
       fmt::arg("value_cases", cases_of_values(verbs, "values=\"{}\"")),
-      fmt::arg("cases", cases_of_verbs(verbs, "options=\"{}\" places=\"{}\"")));
+      fmt::arg("cases", cases_of_verbs(verbs, "options=\"{}\" places=\"{}\" files=\"{}\"")));
 }
 
 std::string zsh_completion(const std::vector<VerbWords>& verbs) {
@@ -185,7 +190,7 @@ std::string zsh_completion(const std::vector<VerbWords>& verbs) {
 # zsh completion of softgrain: save as _softgrain in a folder of $fpath, or in ~/.zshrc after compinit:
 # source <(softgrain completion zsh)
 _softgrain() {{
-  local -a verbs options places values
+  local -a verbs options places files values
   verbs=(
 {names}  )
   if ((CURRENT == 2)); then
@@ -212,6 +217,7 @@ _softgrain() {{
     compadd -- $options
   elif ((CURRENT == 3 && #places)); then
     compadd -- $places
+    ((#files)) && _files
   else
     _files
   fi
@@ -221,7 +227,7 @@ compdef _softgrain softgrain
       fmt::arg("names", names), fmt::arg("keys", joined(names_for_set())),
       fmt::arg("key_cases", cases_of_keys("values=({})")),
       fmt::arg("value_cases", cases_of_values(verbs, "values=({})")),
-      fmt::arg("cases", cases_of_verbs(verbs, "options=({}) places=({})")));
+      fmt::arg("cases", cases_of_verbs(verbs, "options=({}) places=({}) files=({})")));
 }
 
 std::string fish_completion(const std::vector<VerbWords>& verbs) {
@@ -237,8 +243,8 @@ std::string fish_completion(const std::vector<VerbWords>& verbs) {
     text += fmt::format("complete -c softgrain -n __fish_use_subcommand -f -a {} -d {}\n", verb.name,
                         quoted(verb.text, "\\'"));
     if (!verb.places.empty())
-      text += fmt::format("complete -c softgrain -n '__fish_seen_subcommand_from {}' -f -a '{}'\n", verb.name,
-                          joined(verb.places));
+      text += fmt::format("complete -c softgrain -n '__fish_seen_subcommand_from {}' {}-a '{}'\n", verb.name,
+                          verb.files ? "" : "-f ", joined(verb.places));
     for (const OptionWords& option : verb.options) {
       const bool of_case = option.name == "set" || option.name == "vary";
       const Words& offered = of_case ? keys : option.choices;

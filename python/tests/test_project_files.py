@@ -2,6 +2,7 @@
 
 import json
 import re
+import runpy
 import unittest
 from pathlib import Path
 
@@ -40,6 +41,14 @@ class Files(unittest.TestCase):
                   "AI usage disclosure", "Acknowledgements", "References"]
         self.assertEqual(re.findall(r"^# (.*)", paper, re.M), wanted)
         self.assertTrue(750 <= len(paper.split("---", 2)[2].split()) <= 1750)
+
+    def test_the_gallery_has_the_page_of_its_table_and_a_small_picture_for_each_case(self):
+        gallery = runpy.run_path(str(ROOT / "tools/gallery"))
+        self.assertEqual(text("docs/gallery/README.md"), gallery["page"]())
+        sizes = {path.stem: path.stat().st_size for path in (ROOT / "docs/gallery").glob("*.png")}
+        self.assertEqual(sizes.keys(), {case.name for case in gallery["CASES"]})
+        self.assertLess(max(sizes.values()), gallery["LARGEST"])
+        self.assertLess(sum(sizes.values()), gallery["LARGEST_ALL"])
 
     def test_templates_are_forms_with_a_name_and_fields(self):
         try:

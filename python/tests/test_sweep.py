@@ -1,57 +1,19 @@
 """Sweeps, with a stand-in for softgrain that writes a row whose numbers follow from its values."""
 
-import contextlib
-import csv
-import io
-import json
 import os
 import signal
 import stat
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 from pathlib import Path
 
 import numpy as np
 
-from softgrain.sweep import PlanError, __main__, read_plan, scripts
-from softgrain.sweep.figure import mean_curve
-
-PROGRAM = Path(__file__).resolve().parents[1] / "softgrain"
-
-# Its stress is 100 friction + seed; friction = 7 fails; friction = 9 waits for a signal.
-STAND_IN = f"""#!{sys.executable}
-import json, pathlib, signal, sys, time
-verb, words = sys.argv[1], sys.argv[2:]
-sets = dict(w[6:].split("=") for w in words if w.startswith("--set="))
-friction, seed = float(sets.get("contact.friction", 0)), int(sets.get("sample.seed", 1))
-if friction < 0:
-    sys.exit("error: contact.friction = -1 is out of range") if verb == "run" else (
-        print("contact.friction is out of range", file=sys.stderr), sys.exit(2))
-if verb == "check":
-    print(json.dumps({{"case": {{"contact": {{"friction": friction}}, "sample": {{"seed": seed}}}}}}))
-    sys.exit()
-folder = pathlib.Path(words[words.index("-o") + 1])
-folder.mkdir(parents=True, exist_ok=True)
-with (folder / "calls").open("a") as calls:
-    calls.write(" ".join(words) + "\\n")
-(folder / "case.toml").write_text(f"[contact]\\nfriction = {{friction}}\\n[sample]\\nseed = {{seed}}\\n")
-if friction == 7:
-    sys.exit((print("the grain has burst", file=sys.stderr), 3)[1])
-if friction == 9:
-    stopped = []
-    signal.signal(signal.SIGTERM, lambda *_: stopped.append(1))
-    (folder / "run.json").write_text('{{"state": "running"}}')
-    while not stopped:
-        time.sleep(0.01)
-    sys.exit(75)
-stress = 100 * friction + seed
-rows = [f"{{e}},{{s}}" for e, s in ((0, 0), (0.5, 3 * stress), (1, stress))]
-(folder / "series.csv").write_text("\\n".join(["strain,stress_top[Pa]", *rows, ""]))
-(folder / "run.json").write_text('{{"state": "done"}}')
-"""
+from softgrain.sweep import PlanError, read_plan, scripts
+from softgrain.sweep.curves import mean_curve
+from stand_in import PROGRAM, Temporary
 
 
 class Plans(unittest.TestCase):
@@ -63,8 +25,15 @@ class Plans(unittest.TestCase):
         self.assertEqual([run.name for run in plan.runs],
                          [f"friction_{mu}-seed_{seed}" for mu in ("0", "0.5") for seed in (1, 2, 3)])
         self.assertEqual(plan.run_command(plan.runs[4]),
-                         ["softgrain", "run", "case.toml", "--set=solver.max_sweeps=9", "--set=contact.friction=0.5",
+                         ["softgrain", "run", "case.toml", "--set=output.vtk=false", "--set=output.report=false",
+                          "--set=output.snapshots=4", "--set=solver.max_sweeps=9", "--set=contact.friction=0.5",
                           "--set=sample.seed=2", "-o", "out/runs/friction_0.5-seed_2", "--resume"])
+
+    def test_files_that_a_run_usually_writes_come_back_by_set(self):
+        plan = read_plan("softgrain", "case.toml", ["output.vtk=true"], ["output.snapshots=2,9"], "out")
+        words = plan.run_command(plan.runs[0])
+        self.assertEqual([word for word in words if "output" in word],
+                         ["--set=output.report=false", "--set=output.vtk=true", "--set=output.snapshots=2"])
 
     def test_reals_are_counted_from_first_to_last_by_a_step_without_rounding(self):
         values = lambda word: next(iter(self.plan(word).varied.values()))  # noqa: E731
@@ -72,12 +41,15 @@ class Plans(unittest.TestCase):
         self.assertEqual(values("contact.friction=0.1:0.34:0.1"), ["0.1", "0.2", "0.3"])
         self.assertEqual(values("mpm.young_modulus=1:5:2 MPa,20 MPa"), ["1 MPa", "3 MPa", "5 MPa", "20 MPa"])
         self.assertEqual(values("contact.friction=0.5:0:-0.25"), ["0.5", "0.25", "0"])
+        self.assertEqual(values("contact.friction=0..0.5:6"), ["0", "0.1", "0.2", "0.3", "0.4", "0.5"])
+        self.assertEqual(values("mpm.young_modulus=1..2:4 MPa,5 MPa"), ["1 MPa", "1.33333333 MPa", "1.66666667 MPa", "2 MPa", "5 MPa"])
+        self.assertEqual(values("contact.friction=1e-3..-1e-3:3"), ["0.001", "0", "-0.001"])
         for word in ("0:0.1", "0:0.5:0", "0:0.5:-0.1", "0:x:1", "0:1e9:1"):
             with self.assertRaisesRegex(PlanError, "FIRST:LAST:STEP"):
                 self.plan(f"contact.friction={word}")
 
     def test_a_range_of_reals_with_dots_is_told_how_it_is_written(self):
-        for word in ("0..0.5", "0.1..0.5"):
+        for word in ("0..0.5", "0.1..0.5", "0..0.5:1", "0..0.5:0.1", "0..1:x"):
             with self.assertRaisesRegex(PlanError, "0:0.5:0.1"):
                 self.plan(f"contact.friction={word}")
 
@@ -108,47 +80,10 @@ class Plans(unittest.TestCase):
                 self.plan(*wrong)
 
 
-class Temporary(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
-        self.program = self.folder / "softgrain"
-        self.program.write_text(STAND_IN)
-        self.program.chmod(stat.S_IRWXU)
-        self.out = self.folder / "out"
-
-    def words(self, *arguments, frictions="0,0.5", seeds="1..3"):
-        return [str(self.folder / "case.toml"), "-o", str(self.out), f"--vary=contact.friction={frictions}",
-                f"--vary=sample.seed={seeds}", *arguments]
-
-    def sweep(self, *arguments, **values):
-        """(exit code, stdout, stderr) of a sweep."""
-        out, err = io.StringIO(), io.StringIO()
-        os.environ["SOFTGRAIN_PROGRAM"] = str(self.program)
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            code = __main__.main(self.words(*arguments, **values))
-        return code or 0, out.getvalue(), err.getvalue()
-
-    def start(self, *arguments, before=(), **values):
-        """The same as a process of its own; `before` are the words of a program that starts it."""
-        environment = {**os.environ, "SOFTGRAIN_PROGRAM": str(self.program)}
-        return subprocess.Popen([*before, sys.executable, PROGRAM, "sweep", *self.words(*arguments, **values)], env=environment,
-                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-
-    def results(self):
-        with (self.out / "results.csv").open() as file:
-            return list(csv.DictReader(file))
-
-    def calls(self, name):
-        path = self.out / "runs" / name / "calls"
-        return len(path.read_text().splitlines()) if path.exists() else 0
-
-
 class Sweeps(Temporary):
     def test_the_table_has_last_values_and_maxima_of_each_run(self):
         code, out, _ = self.sweep("--jobs=2")
-        self.assertEqual((code, out.split()), (0, [f"{self.out}/results.csv", f"{self.out}/sweep.png"]))
+        self.assertEqual((code, out.split()), (0, [f"{self.out}/{name}" for name in ("results.csv", "curves.csv", "sweep.png")]))
         rows = self.results()
         self.assertEqual(len(rows), 6)
         for row in rows:
@@ -169,7 +104,7 @@ class Sweeps(Temporary):
         self.assertEqual(code, 3)
         self.assertIn("friction_7-seed_1: failed (3): the grain has burst", err)
         self.assertIn("1 of 2 runs failed: friction_7-seed_1", err)
-        self.assertEqual([row["state"] for row in self.results()], ["to do", "done"])
+        self.assertEqual([row["state"] for row in self.results()], ["failed", "done"])
 
     def test_a_wrong_value_is_refused_before_the_first_run(self):
         code, _, err = self.sweep(frictions="0,-1")
@@ -212,7 +147,7 @@ class Sweeps(Temporary):
     def test_without_matplotlib_there_is_the_table_and_no_figure(self):
         stub = self.folder / "matplotlib.py"
         stub.write_text("raise ImportError('No module named matplotlib')")
-        environment = {**os.environ, "SOFTGRAIN_PROGRAM": str(self.program), "PYTHONPATH": str(self.folder)}
+        environment = {**os.environ, "PYTHONPATH": str(self.folder)}
         result = subprocess.run([sys.executable, PROGRAM, "sweep", *self.words()], env=environment, capture_output=True,
                                 text=True)
         self.assertEqual(result.returncode, 0)
@@ -252,25 +187,26 @@ class Scripts(Temporary):
         done = self.submit(2)
         self.assertEqual(done.returncode, 0)
         self.assertEqual(done.stdout.splitlines()[-2:], ["--index", "2"])
-        self.assertIn("--set=loading.wall_velocity=1 m/s\n", done.stdout)
+        self.assertIn(f"sweep\n{self.out.resolve()}/plan.toml\n", done.stdout)
+        self.assertIn('"loading.wall_velocity" = "1 m/s"\n', (self.out / "plan.toml").read_text())
         again = self.submit(5)
         self.assertEqual(again.returncode, 75)
         self.assertIn("scontrol requeue 41", again.stdout)
 
     def test_paths_with_blanks_and_percent_signs_are_quoted_for_slurm(self):
         plan = read_plan("softgrain", "case.toml", [], ["sample.seed=1,2"], Path(self.out) / "50 % of it")
-        text = scripts.slurm_script(plan, ["softgrain"], "array.sh")
+        text = scripts.slurm_scripts(plan, ["softgrain"], 1, None, 1001)["array.sh"]
         self.assertIn('#SBATCH --job-name="50 % of it"\n', text)
-        self.assertIn(f'#SBATCH --output="{plan.folder.resolve().parent}/50 %% of it/slurm-%a.txt"\n', text)
+        self.assertIn(f'#SBATCH --output="{plan.folder.resolve().parent}/50 %% of it/slurm-%A_%a.txt"\n', text)
 
     def test_the_snakefile_is_python_but_for_its_rules_and_names_every_run(self):
         self.assertEqual(self.sweep("--snakemake")[0], 0)
         text = (self.out / "Snakefile").read_text()
         names = {}
         exec(text.partition("rule all")[0], names)
-        self.assertEqual(len(names["RUNS"]), 6)
+        self.assertEqual(list(names["RUNS"].values()), list(range(6)))
         self.assertEqual(names["FOLDER"], self.out.resolve())
-        self.assertIn(f"{self.program} sweep ", names["COMMAND"])
+        self.assertEqual(names["COMMAND"], f"{self.program} sweep {self.out.resolve()}/plan.toml")
         self.assertEqual(text.count("\nrule "), 3)
 
 

@@ -54,6 +54,9 @@ TEST_CASE("bash completes values where they can be listed, also behind =, at whi
   CHECK(bash_offers("run case.toml --set output.vtk = t") == "true\n");
   CHECK(bash_offers("sweep case.toml --column z_no") == "z_no_rattlers\n");
   CHECK(bash_offers("reproduce fig3 --scale q") == "quick\n");
+  CHECK(bash_offers("sweep stat") == "status\n");
+  CHECK(bash_offers("sweep case.toml --over phi") == "phi\nphi_0\n");
+  CHECK(bash_offers("sweep case.toml --ret") == "--retry-failed\n");
   CHECK(bash_offers("completion fi") == "fish\n");
 }
 
@@ -144,6 +147,8 @@ TEST_CASE("fish completes verbs, options and keys when it is there") {
   CHECK(offers("softgrain new x --template compaction-m").starts_with("compaction-mpm\t"));
   CHECK(offers("softgrain run case.toml --set experiment.model=m").starts_with("experiment.model=mpm\t"));
   CHECK(offers("softgrain completion fi") == "fish\n");
+  CHECK(offers("softgrain sweep stat") == "status\n");
+  CHECK(offers("softgrain sweep case.toml --over phi_").starts_with("phi_0"));
 }
 
 TEST_CASE("zsh completes verbs, options and keys when it is there") {
@@ -167,6 +172,7 @@ print -r -- ${${said##*<}%%>*}
   CHECK(completed("run case.toml --set contact.fr") == "run case.toml --set contact.friction=\n");
   CHECK(completed("sweep case.toml --vary sample.see") == "sweep case.toml --vary sample.seed=\n");
   CHECK(completed("export run --to con") == "export run --to contacts\n");
+  CHECK(completed("sweep stat") == "sweep status\n");
   CHECK(completed("run case.toml --set experiment.model=m") == "run case.toml --set experiment.model=mpm\n");
 }
 

@@ -44,9 +44,9 @@ TEST_CASE("a sweep makes each run as `softgrain run` would and sums them up in a
   const TemporaryDirectory folder;
   const auto swept = sweep(folder, {"--jobs", "2", "--set", "contact.wall_friction=0.3", "--column", "step"});
   REQUIRE_MESSAGE(swept.exit_code == 0, swept.err);
-  const auto one =
-      softgrain::test::run({SOFTGRAIN_PROGRAM, "run", (folder.path() / "case.toml").string(), "--set",
-                            "sample.seed=2", "--set", "contact.wall_friction=0.3", "-q"});
+  const auto one = softgrain::test::run({SOFTGRAIN_PROGRAM, "run", (folder.path() / "case.toml").string(),
+                                         "--set", "sample.seed=2", "--set", "contact.wall_friction=0.3",
+                                         "--set", "output.snapshots=4", "--set", "output.vtk=false", "-q"});
   REQUIRE(one.exit_code == 0);
   const auto case_of = [&](const char* run) { return read_text(folder.path() / run / "case.toml"); };
   CHECK(case_of("out/runs/seed_2") == case_of("case_run"));
@@ -95,6 +95,25 @@ TEST_CASE("a sweep called again does nothing twice, and one of its runs can be m
   const auto written = fs::last_write_time(folder.path() / "out/runs/seed_2/run.json");
   CHECK(sweep(folder, {}).err.find("1 of 3 runs: done before") != std::string::npos);
   CHECK(fs::last_write_time(folder.path() / "out/runs/seed_2/run.json") == written);
+}
+
+TEST_CASE("a sweep leaves a plan that goes on with it and tells how far it is, and a dozen files for a run") {
+  const TemporaryDirectory folder;
+  REQUIRE(sweep(folder, {"--index", "1"}).exit_code == 0);
+  const std::string plan = folder.file("plan.toml", "case = 'case.toml'\noutput = 'out'\nseeds = 3\n");
+  const auto call = [&](const std::vector<std::string>& words) {
+    std::vector<std::string> all{SOFTGRAIN_PROGRAM, "sweep"};
+    all.insert(all.end(), words.begin(), words.end());
+    return softgrain::test::run(all, {}, folder.path().string());
+  };
+  CHECK(call({plan}).err.find("1 of 3 runs: done before") != std::string::npos);
+  const auto told = call({"status", "out"});
+  CHECK_MESSAGE(told.out.starts_with("out: 3 runs, 100.0 %"), told.err);
+  CHECK(call({"out", "--list"}).out.find("\n2\tdone\t") != std::string::npos);
+  CHECK(call({"out", "--vary", "sample.seed=4"}).exit_code == 2);
+  const fs::recursive_directory_iterator all(folder.path() / "out/runs/seed_1");
+  const auto is_file = [](const fs::directory_entry& entry) { return entry.is_regular_file(); };
+  CHECK(std::count_if(begin(all), end(all), is_file) <= 12);
 }
 
 TEST_CASE("sweep refuses a value out of range before it runs anything") {

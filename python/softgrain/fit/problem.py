@@ -14,7 +14,7 @@ import numpy as np
 from ..case import Case, DoubtfulRun, call_program, run_case
 from ..compare import MeasuredCurve, is_smooth, run_curve
 from ..run import Run, open_run
-from ..sweep.execute import doubts, state
+from ..sweep.state import doubts, state
 
 OUTPUT = {"output.snapshots": 1, "output.vtk": False, "output.report": False}
 STEP_SMOOTH, STEP_SERRATED = 0.02, 0.3  # of ln p in differences: those of serrated curves must be larger than a serration

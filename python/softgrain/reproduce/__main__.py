@@ -7,7 +7,8 @@ from pathlib import Path
 from .. import NotRecorded, open_run
 from ..options import parse
 from ..plot import save, style
-from ..sweep.execute import DOUBTFUL, doubts
+from ..sweep.execute import NOT_TRUSTED
+from ..sweep.state import doubts
 from . import figures, tables, verdicts
 from .execute import RunFailed, execute
 from .plan import FIGURES, FRICTIONS, MODELS, SCALES, packing_name, planned_runs
@@ -63,7 +64,7 @@ def main(arguments=None):
     print(f"{agree} of {len(found)} statements agree", file=sys.stderr)
     if doubtful:
         print(f"warning: doubtful runs, `softgrain info` tells why: {', '.join(doubtful)}", file=sys.stderr)
-    return DOUBTFUL if doubtful else 0
+    return NOT_TRUSTED if doubtful else 0
 
 
 if __name__ == "__main__":

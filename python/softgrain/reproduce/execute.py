@@ -6,7 +6,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..sweep.execute import Pool, state
+from ..sweep.execute import Pool
+from ..sweep.state import state
 
 
 class RunFailed(RuntimeError):

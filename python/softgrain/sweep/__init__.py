@@ -1,5 +1,7 @@
 """Many runs of one case with some of its values varied. On the command line: `softgrain sweep CASE`."""
 
-from .plan import PlanError, Plan, PlannedRun, read_plan
+from .plan import Plan, PlannedRun, read_plan
+from .plan_file import read_plan_file
+from .values import PlanError
 
-__all__ = ["Plan", "PlanError", "PlannedRun", "read_plan"]
+__all__ = ["Plan", "PlanError", "PlannedRun", "read_plan", "read_plan_file"]

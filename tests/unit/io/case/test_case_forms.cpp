@@ -148,7 +148,8 @@ TEST_CASE("mistakes in the long form are told with line, column and remedy") {
                "case.toml:2:19: error: stage.yy.velocity: unit 'm' has the wrong dimension for a velocity"));
   CHECK(mentions(refusal("[[stage]]\nuntil = { stress_yy = -1 }\n"),
                  "stage.until.stress_yy = -1 is out of range: it must be >= 0\n"));
-  CHECK(mentions(refusal("[[stage]]\nyy = 'roll'\n"), "stage.yy takes one of \"rest\", \"quasi-static\", got 'roll'"));
+  CHECK(mentions(refusal("[[stage]]\nyy = 'roll'\n"),
+                 "stage.yy takes one of \"rest\", \"quasi-static\", got 'roll'"));
   CHECK(mentions(refusal("", {"stage.yy.velocity=1"}), "stands in a table of the file only"));
   CHECK(mentions(refusal("", {"kind.law.young_modulus=5 mm"}), "--set kind.law.young_modulus=5 mm: error:"));
 }
