@@ -206,6 +206,10 @@ class Plots:
         """Stresses on the walls of a die and their ratios; elastic recovery."""
         return self._draw("draw_die", self.run)
 
+    def profile(self):
+        """Density, and stress and friction of the side walls, by height, at the largest load."""
+        return self._draw("draw_profile", self.run)
+
     def heckel(self, window: tuple[float, float] | None = None):
         """Heckel's line and Panelli and Ambrozio's curve, over a window of pressures [Pa]."""
         return self._draw("draw_heckel", self.run, window)

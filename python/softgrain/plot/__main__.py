@@ -7,7 +7,7 @@ import softgrain
 from softgrain import plot
 from softgrain.verb import USAGE_ERROR, carry_out
 
-KINDS_OF_DIE = ("die", "heckel", "kawakita")
+KINDS_OF_DIE = ("die", "heckel", "kawakita", "profile")
 
 
 def draw(options):
@@ -28,6 +28,7 @@ def draw(options):
             figures["die" + suffix] = ([run], lambda run=run: plot.draw_die(run))
             figures["heckel" + suffix] = ([run], lambda run=run: plot.draw_heckel(run, window))
             figures["kawakita" + suffix] = ([run], lambda run=run: plot.draw_kawakita(run, window))
+            figures["profile" + suffix] = ([run], lambda run=run: plot.draw_profile(run))
 
     beside = runs[0].path if len(runs) == 1 else Path()
     folder = Path(options.output) if options.output else beside / "figures"

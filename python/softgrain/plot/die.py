@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from .. import NotRecorded, compaction, measure
+from .. import NotRecorded, compaction, measure, profile
 from .style import BLUE, DOUBLE_COLUMN, GREEN, GREY, MM, SINGLE_COLUMN, VERMILLION, millimetres
 
 HEIGHT = 62  # [mm]
@@ -35,6 +35,28 @@ def draw_die(run):
     left.legend(loc="upper left", title=_recovery_text(series), alignment="left", title_fontsize=7)
     right.set(xlabel="axial stress [MPa]", ylabel="ratio of stresses, loading", xlim=(0, None), ylim=(0, None))
     right.legend(loc="lower right")
+    return figure
+
+
+def draw_profile(run):
+    """Density of the grains, and stress and friction of the side walls, by height, where the load is largest."""
+    if len(run) == 0 or "stress_top" not in run.series:
+        raise NotRecorded(f"{run.path}: no snapshots, or no stress of a top wall, to draw by height")
+    load = np.interp(run.times, run.series["time"], measure.vertical_stress(run.series))
+    snapshot = run[int(np.argmax(load))]
+    density, wall = profile.density_by_height(snapshot), profile.wall_stress_by_height(snapshot)
+    edges = np.r_[0, (density.height[1:] + density.height[:-1]) / 2, density.height[-1] + density.height[0]] * 1e3
+    figure = Figure(figsize=(DOUBLE_COLUMN * MM, HEIGHT * MM), layout="constrained")
+    left, right = figure.subplots(1, 2, sharey=True)
+    left.stairs(density.density, edges, orientation="horizontal", baseline=None, color=BLUE)
+    right.stairs(wall.normal / 1e6, edges, orientation="horizontal", baseline=None, color=VERMILLION, label="normal")
+    right.stairs(wall.shear / 1e6, edges, orientation="horizontal", baseline=None, color=GREEN, label="friction, upwards positive")
+    right.axvline(0, color=GREY, lw=0.5)
+    left.set(xlabel=r"density $\Phi$ of slabs", ylabel="height [mm]", ylim=(0, edges[-1]),
+             xlim=(density.density.min() - 0.03, density.density.max() + 0.03))
+    left.set_title(f"axial stress {load.max() / 1e6:.3g} MPa", loc="left", fontsize=7)
+    right.set(xlabel="stress of the grains on the side walls [MPa]")
+    right.legend(loc="upper center", bbox_to_anchor=(0.5, 1.14), ncols=2)
     return figure
 
 
