@@ -18,7 +18,7 @@ struct Press {
   double most = 0;                ///< v_most [m/s]
   double speed = 0;               ///< v [m/s], > 0: the walls come together
   double mean_force = 0;          ///< sum_w share_w f_w, its mean over tau [N/m]
-  double waiting = 0;             ///< t for which that has been far from F on the same side [s]
+  double waiting = 0;             ///< t: how long that has been on one side of F [s], see end_step
 
   /// tau = 2 m/Z [s]
   double time() const { return 2 * mass / damper; }
@@ -26,7 +26,9 @@ struct Press {
   double mobility(double dt) const;
   /// v+ without impulses, not cut [m/s]; v is that of the start of the step.
   double free_speed(double dt) const { return (mass * speed + dt * force) * mobility(dt); }
-  /// A step of dt [s] is over, with v+ [m/s] and sum_w share_w p_w [N s/m].
+  /// t grows while the mean force stays on one side of F. It is halved in a step that takes it to the other
+  /// side, or from below so near that it would be there within 5 tau at the rate of the step: the press
+  /// brakes. A step of dt [s] is over, with v+ [m/s] and sum_w share_w p_w [N s/m].
   void end_step(double v, double impulse, double dt);
 };
 
