@@ -27,7 +27,7 @@ std::vector<ContactPoint> contact_points(const SoftView& view) {
               n = grains.outline_end(g) - begin;
     const Vec<2>&before = x[begin + (v - begin + n - 1) % n], &after = x[begin + (v - begin + 1) % n];
     const bool wall = contact.wall >= 0;
-    Vec<2> place = x[v];
+    Vec<2> place = contact.slave_at(x);
     if (wall)
       place +=
           0.5 * contact.share * (x[contact.master[2]] - x[contact.master[0]]) + contact.rise * contact.normal;

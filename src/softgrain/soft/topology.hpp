@@ -35,6 +35,12 @@ struct OutlineArc {
 struct Topology {
   /// Takes over the grid; finds points, volumes, and the symbolic factorisation with the outline last.
   explicit Topology(ReferenceGrid reference_grid);
+  /// Of a rigid grain: a grid without cells, whose node 0 is the centre of mass at the origin and whose other
+  /// nodes are the outline. Its nodes carry the grain's mass and its moment of inertia, those of the outline
+  /// equal shares: moment is the integral of |X|^2 over the body [R^4].
+  Topology(ReferenceGrid outline, double moment);
+
+  bool rigid() const { return grid.cell.empty(); }
 
   ReferenceGrid grid;
   std::vector<MaterialPoint> points;  ///< (4 cells)
