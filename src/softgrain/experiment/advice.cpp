@@ -1,6 +1,7 @@
 #include "softgrain/experiment/advice.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/estimate.hpp"
@@ -16,7 +17,7 @@ namespace {
 /// <a0> of one grain [m]: primaries of equal size that fill pi R^2 at a packing fraction of 0.84.
 double mean_distance(const Case& c) { return 2 * c.grain.radius * std::sqrt(0.84 / c.bpm.primaries); }
 
-bool flows(const Case& c) { return c.experiment.model == GrainModel::mpm && law_choice(c.mpm.law).flows(); }
+bool flows(const Case& c) { return is_elastic(c) && law_choice(c.mpm.law).flows(); }
 
 double stress_of(const Case& c) {
   if (!c.kinds.empty()) return least_of_kinds(c, stress_of);
@@ -24,7 +25,8 @@ double stress_of(const Case& c) {
   if (is_in_a_box(c) && c.loading.max_stress > 0) return c.loading.max_stress;
   if (const double named = largest_named_stress(c); is_in_a_box(c) && named > 0) return named;
   if (flows(c)) return c.mpm.material.yield_stress;
-  if (c.experiment.model == GrainModel::mpm) return c.mpm.material.young_modulus;
+  if (is_elastic(c)) return c.mpm.material.young_modulus;
+  if (is_rigid(c)) return std::numeric_limits<double>::infinity();
   return !is_in_a_box(c) ? c.bpm.attraction / mean_distance(c) : c.bpm.cohesive_pressure;
 }
 
@@ -50,11 +52,12 @@ double rate_times_diameter(const Case& c) {
 Advice advise(const Case& c) {
   Advice advice;
   advice.time_step = first_time_step(c);
-  advice.longest_step = c.experiment.model == GrainModel::bpm ? critical_bond_step(c) : longest_time_step(c);
+  advice.longest_step = is_bonded(c) ? critical_bond_step(c) : longest_time_step(c);
+  const double density = largest_of_kinds(c, [](const Case& kind) { return kind.grain.density; });
   advice.stress = stress_of(c);
-  advice.inertial_number =
-      rate_times_diameter(c) *
-      std::sqrt(largest_of_kinds(c, [](const Case& kind) { return kind.grain.density; }) / advice.stress);
+  if (std::isinf(advice.stress))  // of rigid grains that no stress presses: that of their inertia
+    advice.stress = density * c.loading.wall_velocity * c.loading.wall_velocity;
+  advice.inertial_number = rate_times_diameter(c) * std::sqrt(density / advice.stress);
   advice.blow = blow_of(c);
   return advice;
 }

@@ -1,6 +1,6 @@
 #include "softgrain/soft/explicit_step.hpp"
 
-// Rigid grains in the explicit step (theory (74)).
+// Rigid grains in the explicit step (theory (72)).
 
 namespace softgrain {
 

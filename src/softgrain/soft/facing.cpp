@@ -7,15 +7,14 @@ namespace {
 
 /// The outlines `position` round the vertex v of a grain.
 std::array<Vec<2>, 3> beside(const SoftGrains& grains, std::span<const Vec<2>> position, int v) {
-  const Ring ring = ring_of(grains, v);
-  return {position[ring.previous(v)], position[v], position[ring.next(v)]};
+  const auto [before, after] = grains.beside(v);
+  return {position[before], position[v], position[after]};
 }
 
 void set_place(OutlineContact& contact, const SoftGrains& grains, const ArcPlace& place) {
-  const Ring ring = ring_of(grains, contact.vertex);
   contact.along = place.along;
   contact.inward = place.inward;
-  contact.beside = {ring.previous(contact.vertex), ring.next(contact.vertex)};
+  contact.beside = grains.beside(contact.vertex);
 }
 
 }  // namespace

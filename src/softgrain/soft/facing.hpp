@@ -12,12 +12,15 @@ namespace softgrain {
 /// The vertices of one outline, in a ring.
 struct Ring {
   int begin, end;
+  const char* corner;  ///< (its vertices) or nullptr
+  bool is_corner(int vertex) const { return corner != nullptr && corner[vertex - begin] != 0; }
   int next(int vertex) const { return vertex + 1 < end ? vertex + 1 : begin; }
   int previous(int vertex) const { return vertex > begin ? vertex - 1 : end - 1; }
 };
 inline Ring ring_of(const SoftGrains& grains, int vertex) {
   const int grain = grains.grain_of_vertex(vertex);
-  return {grains.outline_begin(grain), grains.outline_end(grain)};
+  const std::vector<char>& corner = grains.topology(grain).corner;
+  return {grains.outline_begin(grain), grains.outline_end(grain), corner.empty() ? nullptr : corner.data()};
 }
 
 /// The vertex of a master's outline where the segment starts that x faces, next to the vertex nearest to x.
@@ -27,11 +30,14 @@ inline int facing_segment(const Ring& ring, std::span<const Vec<2>> position, co
   return dot(x - position[nearest], tangent) < 0 ? before : nearest;
 }
 
-/// The place that a slave at x faces on the curve from the vertex `start` to the next.
+/// The place that a slave at x faces on the curve from the vertex `start` to the next. At a corner the curve
+/// ends as one whose next vertex is the corner itself: sides between corners are straight.
 inline OutlineContact curve_contact(std::span<const Vec<2>> position, const Ring& ring, int slave,
                                     const Vec<2>& x, int start) {
   const int end = ring.next(start);
-  OutlineContact contact{.vertex = slave, .master = {ring.previous(start), start, end, ring.next(end)}};
+  OutlineContact contact{.vertex = slave,
+                         .master = {ring.is_corner(start) ? start : ring.previous(start), start, end,
+                                    ring.is_corner(end) ? end : ring.next(end)}};
   const SpanCurve curve(position, contact.master);
   contact.share = curve.closest_to(x);
   const Vec<2> t = curve.tangent(contact.share);

@@ -1,6 +1,6 @@
 #include "softgrain/soft/implicit_step.hpp"
 
-// Rigid grains in the implicit step (theory (73)): their equations, and A, on three motions.
+// Rigid grains in the implicit step (theory (71)): their equations, and A, on three motions.
 
 namespace softgrain {
 

@@ -117,7 +117,7 @@ class ImplicitDynamics {
     Wide couple = 0.0;                ///< c
   };
 
-  /// Of a batch of rigid grains, in an iteration (theory (73)): A on their three motions answers forces f_i
+  /// Of a batch of rigid grains, in an iteration (theory (71)): A on their three motions answers forces f_i
   /// on the nodes by
   ///   u_i = W^-1 sum_j f_j + a_i s^-1 sum_j a_j . f_j,
   /// a_i the motion of node i in a turn about the place where A has no coupling.

@@ -1,7 +1,7 @@
 #pragma once
 #include "softgrain/soft/soft_grains.hpp"
 
-// Rigid grains among soft ones (theory (72)): three degrees of freedom, seen as nodes that keep their places
+// Rigid grains among soft ones (theory (70)): three degrees of freedom, seen as nodes that keep their places
 // to each other,
 //   x_i = x_c + R Q X_i,  v_i = v_c + w e_z x (x_i - x_c),
 // with masses of the nodes that add up to m and to I. Node 0 is the centre of mass. Where a step has moved

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
@@ -101,8 +102,18 @@ double SoftGrains::largest_wave_modulus() const {
   return largest;
 }
 
+double SoftGrains::radius_of_area(int grain) const {
+  const Topology& shape = topology(grain);
+  return shape.round ? radius(grain) : radius(grain) * std::sqrt(shape.area / std::numbers::pi);
+}
+
 double SoftGrains::mass(int grain) const {
   return materials_[kind(grain)].density * shapes_[grain]->area * radius_[grain] * radius_[grain];
+}
+
+std::array<int, 2> SoftGrains::beside(int vertex) const {
+  const int grain = grain_of_vertex(vertex), begin = outline_begin(grain), end = outline_end(grain);
+  return {vertex > begin ? vertex - 1 : end - 1, vertex + 1 < end ? vertex + 1 : begin};
 }
 
 void SoftGrains::gather_outline(std::vector<Vec<2>>& position) const {

@@ -65,6 +65,8 @@ class SoftGrains {
 
   int size() const { return static_cast<int>(radius_.size()); }
   double radius(int grain) const { return radius_[grain]; }
+  /// Of the disk of the grain's undeformed area [m]: R of a disk.
+  double radius_of_area(int grain) const;
   int kinds() const { return static_cast<int>(materials_.size()); }
   int kind(int grain) const { return batches[place_[grain].batch].kind; }
   const GrainMaterial& material(int kind) const { return materials_[kind]; }
@@ -92,6 +94,8 @@ class SoftGrains {
   int outline_end(int grain) const { return outline_begin_[grain + 1]; }
   int outline_size() const { return outline_begin_.back(); }
   int grain_of_vertex(int vertex) const { return grain_of_vertex_[vertex]; }
+  /// The vertices before and after it on its outline.
+  std::array<int, 2> beside(int vertex) const;
   /// visit(vertex, node, lane) for all outline vertices of the grains of a batch.
   template <class Visit>
   void for_each_vertex(const GrainBatch& batch, Visit&& visit) const {

@@ -92,7 +92,11 @@ Topology::Topology(ReferenceGrid reference_grid)
             {pattern.block(cell[a], cell[b]), a != b && pattern.transposed(cell[a], cell[b])});
 }
 
-Topology::Topology(ReferenceGrid outline, double moment) : Topology(std::move(outline)) {
+Topology::Topology(ReferenceGrid outline, double moment, std::vector<char> corners)
+    : Topology(std::move(outline)) {
+  corner = std::move(corners);
+  for (std::size_t v = 0; v < corner.size(); ++v)
+    if (corner[v] != 0) arc[v] = {}, round = false;
   double squares = 0;
   for (const Vec<2>& X : grid.outline()) squares += dot(X, X);
   node_volume.assign(grid.nodes(), moment / squares);
