@@ -70,14 +70,23 @@ TEST_CASE("sides of rigid polygons are straight and their corners sharp") {
         made_rigid({square_at({0, 0}), square_at({2 * half_side + 0.02 * R, beside * half_side})});
     CHECK(least_gap(pair) / (0.02 * R) == doctest::Approx(1).epsilon(1e-9));
   }
-  // corner past corner: they clear each other where either side does
+  // corner faces corner
   const SoftGrains pair =
       made_rigid({square_at({0, 0}), square_at({2 * half_side + 0.03 * R, 2 * half_side + 0.01 * R})});
-  CHECK(least_gap(pair) / (0.03 * R) == doctest::Approx(1).epsilon(1e-9));
+  CHECK(least_gap(pair) / (std::hypot(0.03, 0.01) * R) == doctest::Approx(1).epsilon(1e-9));
   // a corner over the middle of a side
   const SoftGrains on_side = made_rigid(
       {square_at({0, 0}), test::placed(shape_of(rigid_polygon(4, 32)), R, {0.1 * R, half_side + 1.01 * R})});
   CHECK(least_gap(on_side) / (0.01 * R) == doctest::Approx(1).epsilon(1e-9));
+}
+
+TEST_CASE("a rigid disk beside the corner of a square is as far from it as the corner from its circle") {
+  const double gap = 0.01 * R;
+  const Vec<2> way{std::cos(0.6), std::sin(0.6)};
+  const SoftGrains pair =
+      made_rigid({square_at({0, 0}),
+                  test::placed(shape_of(rigid_disk(32)), R, Vec<2>{half_side, half_side} + (R + gap) * way)});
+  CHECK(std::abs(least_gap(pair) - gap) < 1e-3 * gap);
 }
 
 TEST_CASE("two rigid disks touch where their circles do, however their vertices lie") {

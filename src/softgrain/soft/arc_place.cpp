@@ -28,7 +28,7 @@ ArcPlace arc_place(const std::array<Vec<2>, 3>& x, const OutlineArc& arc, double
   const double r = size * arc.radius, rise = r * (1 - std::sqrt(1 - sine * sine));
   const double inward = rise / dot(middle, in);
   const double along = (r * sine - inward * dot(middle, t)) / (norm(x[2] - x[0]) / 2);
-  return {x[1] + (r * sine) * t + rise * in, along, inward};
+  return {x[1] + (r * sine) * t + rise * in, along, inward, away || sine != wanted};
 }
 
 }  // namespace softgrain

@@ -9,6 +9,7 @@ namespace softgrain {
 struct ArcPlace {
   Vec<2> x;  ///< p [m]
   double along = 0, inward = 0;
+  bool at_end = false;  ///< of the arc, which does not go on in that direction
 };
 
 /// x: before the vertex, at it and after it [m]; size: R [m]; direction: unit, out of the grain.

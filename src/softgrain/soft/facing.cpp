@@ -47,9 +47,12 @@ OutlineContact facing_arc(const SoftGrains& grains, std::span<const Vec<2>> posi
                           const OutlineArc& arc, const Vec<2>& shift, int nearest) {
   const double size = grains.radius(grains.grain_of_vertex(v));
   const std::array<Vec<2>, 3> x = beside(grains, position, v);
-  const Vec<2> n = facing_contact(position, ring, v, arc_centre(x, arc, size) - shift, nearest).normal;
-  const ArcPlace place = arc_place(x, arc, size, -n);
-  OutlineContact contact = facing_contact(position, ring, v, place.x - shift, nearest);
+  OutlineContact contact = facing_contact(position, ring, v, arc_centre(x, arc, size) - shift, nearest);
+  const ArcPlace place = arc_place(x, arc, size, -contact.normal);
+  if (place.at_end)
+    contact = facing_contact(position, ring, v, place.x - shift, nearest);
+  else
+    contact.gap -= size * arc.radius;
   set_place(contact, grains, place);
   return contact;
 }

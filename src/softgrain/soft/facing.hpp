@@ -42,7 +42,15 @@ inline OutlineContact curve_contact(std::span<const Vec<2>> position, const Ring
   contact.share = curve.closest_to(x);
   const Vec<2> t = curve.tangent(contact.share);
   contact.normal = (-1 / norm(t)) * perpendicular(t);  // outward of a counter-clockwise outline
-  contact.gap = dot(x - curve.place(contact.share), contact.normal);
+  const Vec<2> d = x - curve.place(contact.share);
+  contact.gap = dot(d, contact.normal);
+  constexpr double at_end = 1e-9;
+  const bool beside_corner = (contact.share < at_end && ring.is_corner(start)) ||
+                             (contact.share > 1 - at_end && ring.is_corner(end));
+  if (beside_corner && contact.gap > 0) {  // from the corner to x
+    contact.gap = norm(d);
+    contact.normal = (1 / contact.gap) * d;
+  }
   return contact;
 }
 
