@@ -94,7 +94,7 @@ inline std::vector<TinyCase> tiny_cases() {
       cases.push_back({name, source, tiny_settings(name)});
     if (name == "soft_rigid") {
       Words more = tiny_path(name);
-      more.insert(more.end(), {"mpm.integrator=\"explicit\"", "box.x=\"periodic\""});
+      more.insert(more.end(), {"mpm.integrator=\"explicit\"", "box.x=\"periodic\"", "sample.grains=9"});
       cases.push_back({"explicit-periodic-soft_rigid", source, more});
     }
   }
