@@ -128,8 +128,9 @@ TEST_CASE("mistakes in the long form are told with line, column and remedy") {
       refusal("[[kind]]\nlaw = { young_modulus = '5 mm' }\n"),
       "case.toml:2:25: error: kind.law.young_modulus: unit 'mm' has the wrong dimension for a stress"));
   CHECK(mentions(refusal("[[kind]]\nlaw = 'hencky'\n"), "'kind.law' is a table"));
-  CHECK(mentions(refusal("[[kind]]\nshape = 'dsk'\n"),
-                 "kind.shape takes \"disk\", got 'dsk'; did you mean 'disk'?"));
+  CHECK(mentions(
+      refusal("[[kind]]\nshape = 'dsk'\n"),
+      "kind.shape takes one of \"disk\", \"ellipse\", \"polygon\", got 'dsk'; did you mean 'disk'?"));
   CHECK(mentions(refusal("[[kind]]\nname = 'wall'\n"), "\"wall\" is taken"));
   CHECK(mentions(refusal("[[kind]]\nshare = 0.7\n"),
                  "case.toml:2:1: error: kind.share = 0.7: there is only one"));

@@ -71,7 +71,7 @@ TEST_CASE("each of several kinds has its law, density, sizes and number, and wha
   CHECK(lead.law == MaterialLaw::von_mises);
   CHECK(lead.material.yield_stress == 1e5);
   CHECK(lead.material.poisson_ratio == 0.3);
-  CHECK(lead.density == 11000);
+  CHECK(lead.grain.density == 11000);
   CHECK(lead.cells == 5);
   CHECK(lead.sizes.sizes == SizeLaw::list);
   CHECK(c.sample.grains == 10);
