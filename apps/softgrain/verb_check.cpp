@@ -23,7 +23,7 @@ std::vector<std::string> notes_of(const CaseReading& reading) {
   std::vector<std::string> notes = reading.notes;
   for (std::string& note : notes_on_effect(reading.the_case, reading.without_effect))
     notes.push_back(std::move(note));
-  if (reading.the_case.experiment.model != GrainModel::mpm) return notes;
+  if (!is_elastic(reading.the_case)) return notes;
   const std::string_view caution = law_choice(reading.the_case.mpm.law).caution;
   if (!caution.empty()) notes.push_back(fmt::format("note: mpm.law: {}", caution));
   return notes;
@@ -62,7 +62,7 @@ void print_json(const CaseReading& reading, const Estimate& estimate, const Advi
 }
 
 void print_estimate(const Case& the_case, const Estimate& estimate) {
-  const bool bpm = the_case.experiment.model == GrainModel::bpm;
+  const bool bpm = is_bonded(the_case);
   const auto count = [](double number) { return grouped(std::llround(number)); };
   fmt::print(stderr,
              "{} {}, about {} contacts\n"

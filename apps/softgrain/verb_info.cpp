@@ -46,13 +46,12 @@ Json json_of(const std::vector<Quantity>& row) {
 /// "diametral of bpm, 1750 primaries, friction 0, seed 1", "compaction of mpm, 20 grains of 3584 points,
 /// ...".
 std::string summary(const Case& c) {
-  const std::string grain = c.experiment.model == GrainModel::mpm
-                                ? fmt::format("{} points", 14 * c.mpm.cells * c.mpm.cells)
-                                : fmt::format("{} primaries", c.bpm.primaries);
+  const std::string grain = is_elastic(c) ? fmt::format("{} points", 14 * c.mpm.cells * c.mpm.cells)
+                            : is_rigid(c) ? fmt::format("{} vertices", 4 * c.mpm.cells)
+                                          : fmt::format("{} primaries", c.bpm.primaries);
   const std::string grains =
       c.experiment.loading == LoadingPath::diametral ? "" : fmt::format("{} grains of ", c.sample.grains);
-  const bool one_bonded =
-      c.experiment.model == GrainModel::bpm && c.experiment.loading == LoadingPath::diametral;
+  const bool one_bonded = is_bonded(c) && c.experiment.loading == LoadingPath::diametral;
   const double friction = one_bonded ? c.bpm.inner_friction : c.contact.friction;
   return fmt::format("{} of {}, {}{}, friction {}, seed {}", word_of(c.experiment.loading),
                      word_of(c.experiment.model), grains, grain, friction, c.sample.seed);

@@ -73,9 +73,9 @@ void drive(LawArguments& arguments) {
   require(arguments.figure.empty() || !arguments.table.empty(),
           "--plot draws what -o writes: give -o FILE.csv too");
   const Case the_case = read_case(arguments.the_case.path, arguments.the_case.sets);
-  require(the_case.experiment.model == GrainModel::mpm,
-          "{} has bonded grains, which have no law of a material point: experiment.model must be \"mpm\"",
-          arguments.the_case.path);
+  require(is_elastic(the_case),
+          "{} has {} grains, which have no law of a material point: experiment.model must be \"mpm\"",
+          arguments.the_case.path, is_bonded(the_case) ? "bonded" : "rigid");
   arguments.test.path =
       std::ranges::find(paths, arguments.path, [](const auto& p) { return p.first; })->second;
   const AnyLaw law = make_law(the_case.mpm.law, the_case.mpm.material);

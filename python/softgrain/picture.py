@@ -93,7 +93,20 @@ def _surface(snapshot, values):
     quads = cells(snapshot)
     if quads is None:
         return Surface([], position, POINT_COVER * radius, values, polygons)
-    return Surface(quads, NOWHERE, np.empty(0), values.reshape(-1, 4).mean(axis=1), polygons)
+    return Surface(_with_rigid(snapshot, quads), NOWHERE, np.empty(0), values.reshape(-1, 4).mean(axis=1), polygons)
+
+
+def _with_rigid(snapshot, quads):
+    """Cells, but of rigid grains, which have one each, their outlines."""
+    grain = snapshot.particles["grain"].astype(int)[::4]
+    alone = np.flatnonzero(np.bincount(grain)[grain] == 1)
+    if alone.size == 0:
+        return quads
+    rims = dict(outlines(snapshot))
+    shapes = list(quads)
+    for k in alone:
+        shapes[k] = rims[grain[k]]
+    return shapes
 
 
 def shows_whole_grains(snapshot: Snapshot) -> bool:

@@ -268,6 +268,13 @@ class Contacts(Temporary):
         self.assertEqual(table["wall"].tolist(), [-1, 1])
         self.assertEqual(table["grain_a"].tolist(), [0, 1])
         np.testing.assert_allclose(table["y[m]"], [2e-3, 4e-3])
+        self.assertNotIn("kind_a", table)
+        with h5py.File(self.run_of_bonds.snapshots[-1], "r+") as file:
+            particles = file["scene/particles"]
+            particles["kind"] = (np.array(particles["grain"]).ravel() == 1).astype(int)[:, None]
+        table = self.table()
+        self.assertEqual(table["kind_a"].tolist(), [0, 1])
+        self.assertEqual(table["kind_b"].tolist(), [1, -1])
 
     def test_a_snapshot_without_contacts_is_named(self):
         with h5py.File(self.run_of_bonds.snapshots[-1], "r+") as file:

@@ -34,6 +34,10 @@ inline Words tiny_path(const std::string& name) {
   if (name == "rubber_sand")
     add({"loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.17", "loading.unload_at=[0.15]",
          "loading.unload_by=0.04", "loading.max_stress=0", "sample.packing_fraction=0.62"});
+  if (name == "soft_rigid")
+    add({"loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.17", "loading.unload_at=[0.15]",
+         "loading.unload_by=0.04", "loading.max_stress=0", "loading.max_packing_fraction=0",
+         "sample.packing_fraction=0.62", "kind.rigid.share=0.5"});
   if (name == "jamming")
     add({"sample.grains=9", "loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.15"});
   if (name == "shear")
@@ -82,12 +86,17 @@ inline std::vector<TinyCase> tiny_cases() {
       cases.push_back({name, source, tiny_path(name), 0});
     else if (name == "die" || name == "tablet")
       cases.push_back({name, source, tiny_path(name), 5});
-    else if (name == "rubber_sand")
+    else if (name == "rubber_sand" || name == "soft_rigid")
       cases.push_back({name, source, tiny_path(name)});
     else if (name == "biaxial" || name == "relaxation" || name == "shear")
       cases.push_back({name, source, tiny_path(name), name == "relaxation" ? 1U : 2U});
     else
       cases.push_back({name, source, tiny_settings(name)});
+    if (name == "soft_rigid") {
+      Words more = tiny_path(name);
+      more.insert(more.end(), {"mpm.integrator=\"explicit\"", "box.x=\"periodic\"", "sample.grains=9"});
+      cases.push_back({"explicit-periodic-soft_rigid", source, more});
+    }
   }
   const auto add_variant = [&](const std::string& name, const std::string& base, const Words& more) {
     Words settings = tiny_settings(base);

@@ -13,6 +13,7 @@ def contact_table(snapshot: Snapshot) -> dict[str, np.ndarray]:
     a, b               the two particles of bonded grains, or the two elastic grains; b is -1 for a wall
     wall               0 bottom, 1 top, 2 left, 3 right; -1 for none
     grain_a, grain_b   their grains; grain_b is -1 for a wall
+    kind_a, kind_b     the kinds of these, from 0; kind_b is -1 for a wall; left out where there is one kind
     normal_x, normal_y unit vector from a to b
     x, y               where they touch [m]
     normal_force       [N/m], positive
@@ -30,6 +31,12 @@ def contact_table(snapshot: Snapshot) -> dict[str, np.ndarray]:
     normal, place = _geometry(snapshot, a, b, wall)
     table = dict(a=a, b=b, wall=wall, grain_a=owner[a].astype(int), grain_b=np.where(wall < 0, owner[b], -1).astype(int),
                  normal_x=normal[:, 0], normal_y=normal[:, 1], x=place[:, 0], y=place[:, 1], normal_force=contacts["force"])
+    kind = snapshot.particles.get("kind")
+    if kind is not None:
+        grains, first = np.unique(snapshot.particles["grain"].astype(int), return_index=True)
+        of_grain = dict(zip(grains, kind[first].astype(int)))
+        for side in "ab":
+            table[f"kind_{side}"] = np.array([of_grain.get(grain, -1) for grain in table[f"grain_{side}"]], int)
     if "total_force" in contacts:
         table["tangential_force"] = (contacts["total_force"] * np.column_stack([-normal[:, 1], normal[:, 0]])).sum(axis=1)
     elif "tangential_force" in contacts:

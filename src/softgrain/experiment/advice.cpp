@@ -1,6 +1,7 @@
 #include "softgrain/experiment/advice.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/estimate.hpp"
@@ -16,13 +17,14 @@ namespace {
 /// <a0> of one grain [m]: primaries of equal size that fill pi R^2 at a packing fraction of 0.84.
 double mean_distance(const Case& c) { return 2 * c.grain.radius * std::sqrt(0.84 / c.bpm.primaries); }
 
-bool flows(const Case& c) { return c.experiment.model == GrainModel::mpm && law_choice(c.mpm.law).flows(); }
+bool flows(const Case& c) { return is_elastic(c) && law_choice(c.mpm.law).flows(); }
 
 /// At which grains deform as a whole [Pa].
 double own_stress(const Case& c) {
   if (!c.kinds.empty()) return least_of_kinds(c, own_stress);
   if (flows(c)) return c.mpm.material.yield_stress;
-  if (c.experiment.model == GrainModel::mpm) return c.mpm.material.young_modulus;
+  if (is_elastic(c)) return c.mpm.material.young_modulus;
+  if (is_rigid(c)) return std::numeric_limits<double>::infinity();
   return !is_in_a_box(c) ? c.bpm.attraction / mean_distance(c) : c.bpm.cohesive_pressure;
 }
 
@@ -55,11 +57,12 @@ double diameter_of(const Case& c) {
 /// Height of the box, or of the grain between walls, at the start [m].
 double height_of(const Case& c) { return is_in_a_box(c) ? box_height(c) : 2 * c.grain.radius; }
 
-/// d sqrt(rho/p) [s]: I over the rate.
-double inertial_time(const Case& c) {
-  const double density = largest_of_kinds(c, [](const Case& kind) { return kind.grain.density; });
-  return diameter_of(c) * std::sqrt(density / stress_of(c));
+double density_of(const Case& c) {
+  return largest_of_kinds(c, [](const Case& kind) { return kind.grain.density; });
 }
+
+/// d sqrt(rho/p) [s]: I over the rate. 0 of rigid grains that no stress presses.
+double inertial_time(const Case& c) { return diameter_of(c) * std::sqrt(density_of(c) / stress_of(c)); }
 
 }  // namespace
 
@@ -70,9 +73,15 @@ double quasi_static_velocity(const Case& c) { return quasi_static_rate(c) * heig
 Advice advise(const Case& c) {
   Advice advice;
   advice.time_step = first_time_step(c);
-  advice.longest_step = c.experiment.model == GrainModel::bpm ? critical_bond_step(c) : longest_time_step(c);
+  advice.longest_step = is_bonded(c) ? critical_bond_step(c) : longest_time_step(c);
   advice.stress = stress_of(c);
-  advice.inertial_number = c.loading.wall_velocity / height_of(c) * inertial_time(c);
+  const double rate = c.loading.wall_velocity / height_of(c);
+  if (std::isinf(advice.stress)) {  // of rigid grains that no stress presses: that of their inertia
+    advice.stress = density_of(c) * c.loading.wall_velocity * c.loading.wall_velocity;
+    advice.inertial_number = rate * diameter_of(c) / c.loading.wall_velocity;
+  } else {
+    advice.inertial_number = rate * inertial_time(c);
+  }
   advice.blow = blow_of(c);
   return advice;
 }

@@ -27,8 +27,9 @@ enum class LoadingPath {
   relaxation,  ///< compaction, then rest
   stages,      ///< grains in a box, along stages of one's own
 };
-enum class GrainModel { bpm, mpm };         ///< bonded rigid primaries, an elastic body
-enum class EqualPrimaries { count, size };  ///< what the grains of a packing share
+enum class GrainModel { bpm, mpm, rigid };         ///< bonded rigid primaries, an elastic body, a rigid one
+enum class GrainShape { disk, ellipse, polygon };  ///< of rigid grains
+enum class EqualPrimaries { count, size };         ///< what the grains of a packing share
 enum class Integrator {
   backward_euler,    ///< implicit
   symplectic_euler,  ///< explicit
@@ -45,8 +46,11 @@ struct Case {
   } experiment;
 
   struct Grain {
-    double radius = 5e-3;  ///< R [m]
-    double density = 990;  ///< rho [kg/m^3]: the grain weighs rho pi R^2
+    double radius = 5e-3;                 ///< R [m]
+    double density = 990;                 ///< rho [kg/m^3]: the grain weighs rho pi R^2
+    GrainShape shape = GrainShape::disk;  ///< of a rigid grain; others lie in the circle of its diameter
+    double aspect = 2;                    ///< of an ellipse, long over short axis
+    int sides = 5;                        ///< of a regular polygon
   } grain;
 
   struct Bpm {
@@ -136,8 +140,9 @@ struct Case {
   /// Of several kinds of grains: what `grain`, `mpm` and `sample` say where there is but one.
   struct Kind {
     std::string name;
-    int grains = 0;      ///< in the box
-    double density = 0;  ///< rho [kg/m^3]
+    int grains = 0;                      ///< in the box
+    GrainModel model = GrainModel::mpm;  ///< or rigid
+    Grain grain;                         ///< but its radius
     MaterialLaw law = MaterialLaw::neo_hookean;
     MaterialParameters material;
     int cells = 0;
@@ -177,6 +182,9 @@ inline std::array<bool, 2> repeats_of(const Case& c) {
 inline Vec<2> gravity_of(const Case& c) {
   return is_in_a_box(c) ? Vec<2>{c.box.gravity_x, c.box.gravity_y} : Vec<2>{};
 }
+inline bool is_bonded(const Case& c) { return c.experiment.model == GrainModel::bpm; }
+inline bool is_elastic(const Case& c) { return c.experiment.model == GrainModel::mpm; }
+inline bool is_rigid(const Case& c) { return c.experiment.model == GrainModel::rigid; }
 inline bool is_isotropic(const Case& c) { return c.experiment.loading == LoadingPath::isotropic; }
 
 }  // namespace softgrain

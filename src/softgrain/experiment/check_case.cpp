@@ -35,7 +35,7 @@ Case twin_of(Case c) {
 
 void check_case(const Case& c) {
   check_time_step(c);
-  const bool bpm = c.experiment.model == GrainModel::bpm;
+  const bool bpm = is_bonded(c);
   if (estimate(c).particles <= (bpm ? few_primaries : few_points)) {
     create_simulation(c);
     return;

@@ -10,6 +10,7 @@
 #include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/lattice/lattice_grains.hpp"
 #include "softgrain/soft/elastic_grains.hpp"
+#include "softgrain/soft/rigid_outline.hpp"
 
 namespace softgrain {
 namespace {
@@ -26,17 +27,38 @@ SoftGrains grains_of(const Case& c, std::vector<GrainPlacement> placed) {
   std::vector<GrainMaterial> materials;
   for (int k = 0; k < kinds_of(c); ++k) {
     const Case of_kind = case_of_kind(c, k);
-    materials.push_back({law_of(of_kind), of_kind.grain.density});
+    const double density = of_kind.grain.density;
+    if (is_rigid(of_kind))
+      materials.push_back({.law = {}, .density = density, .rigid = true});
+    else
+      materials.push_back({law_of(of_kind), density});
   }
   return {std::move(placed), std::move(materials)};
 }
 
-/// The grid of each kind; kinds of one resolution share it.
+Topology rigid_shape_of(const Case& c) {
+  const int vertices = 4 * c.mpm.cells;
+  switch (c.grain.shape) {
+    case GrainShape::ellipse:
+      return rigid_ellipse(c.grain.aspect, vertices);
+    case GrainShape::polygon:
+      return rigid_polygon(c.grain.sides, vertices);
+    default:
+      return rigid_disk(vertices);
+  }
+}
+
+/// The grid of each kind; elastic kinds of one resolution share it.
 std::vector<std::shared_ptr<const Topology>> shapes_of(const Case& c) {
   std::map<int, std::shared_ptr<const Topology>> by_cells;
   std::vector<std::shared_ptr<const Topology>> shapes;
   for (int k = 0; k < kinds_of(c); ++k) {
-    const int cells = case_of_kind(c, k).mpm.cells;
+    const Case of_kind = case_of_kind(c, k);
+    const int cells = of_kind.mpm.cells;
+    if (is_rigid(of_kind)) {
+      shapes.push_back(std::make_shared<const Topology>(rigid_shape_of(of_kind)));
+      continue;
+    }
     std::shared_ptr<const Topology>& shape = by_cells[cells];
     if (!shape) shape = std::make_shared<const Topology>(disk_grid(cells));
     shapes.push_back(shape);
@@ -80,7 +102,9 @@ double cell_of(const Case& c) {
   return c.grain.radius * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;  // 14 cells^2 points, 4 to a cell
 }
 
-bool is_lattice(const Case& c) { return c.mpm.formulation == Formulation::updated_lagrangian; }
+bool is_lattice(const Case& c) {
+  return is_elastic(c) && c.mpm.formulation == Formulation::updated_lagrangian;
+}
 
 /// A cell has the size that gives both formulations 14 cells^2 points.
 PlacedModel lattice_grain_of(const Case& c) {
@@ -101,8 +125,13 @@ PlacedModel lattice_grain_of(const Case& c) {
   return {std::make_unique<LatticeGrains>(std::move(dynamics)), std::move(box), dt};
 }
 
+/// Step of so much of the way of the walls.
+double longest_way(const Case& c, double smallest_radius) {
+  return way_share * smallest_radius / c.loading.wall_velocity;
+}
+
 PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double smallest_radius) {
-  const double dt = c.time.step > 0 ? c.time.step : way_share * smallest_radius / c.loading.wall_velocity;
+  const double dt = c.time.step > 0 ? c.time.step : longest_way(c, smallest_radius);
   const ImplicitOptions options{.tolerance = tolerance_of(c, grains, box.height()),
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
@@ -113,8 +142,10 @@ PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double
   return {std::make_unique<ElasticGrains<ImplicitDynamics>>(std::move(dynamics)), std::move(box), dt};
 }
 
-PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box) {
-  const double dt = c.time.step > 0 ? c.time.step : stable_time_step(grains);
+PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box, double smallest_radius) {
+  const double dt = c.time.step > 0             ? c.time.step
+                    : grains.fastest_wave() > 0 ? stable_time_step(grains)
+                                                : longest_way(c, smallest_radius);
   const ExplicitOptions options{.damping_share = damping_share,
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
@@ -129,10 +160,11 @@ PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box) {
 
 double longest_time_step(const Case& c) {
   constexpr double no_limit = std::numeric_limits<double>::infinity();
-  if (c.experiment.model != GrainModel::mpm) return no_limit;
+  if (is_bonded(c)) return no_limit;
   if (is_lattice(c)) return stable_time_step(law_of(c), c.grain.density, cell_of(c), 0.2 * (1 + 1e-9));
   if (c.mpm.integrator != Integrator::symplectic_euler) return no_limit;
   const auto longest = [](const Case& of_kind) {
+    if (is_rigid(of_kind)) return no_limit;
     const double radius = !is_in_a_box(of_kind)           ? of_kind.grain.radius
                           : of_kind.sample.placed.empty() ? diameter_law(of_kind.sample).least() / 2
                                                           : of_kind.sample.smallest_diameter / 2;
@@ -144,7 +176,7 @@ double longest_time_step(const Case& c) {
 }
 
 void check_time_step(const Case& c) {
-  if (c.time.step == 0 || c.experiment.model != GrainModel::mpm) return;
+  if (c.time.step == 0 || is_bonded(c)) return;
   const double longest = longest_time_step(c);
   require(c.time.step <= longest,
           "time.step {:.4g} us is beyond the longest stable step of an explicit run of this case, "
@@ -170,7 +202,7 @@ PlacedModel elastic_grains_of(const Case& c) {
   for (const GrainPlacement& grain : placed) smallest = std::min(smallest, grain.radius);
   SoftGrains grains = grains_of(c, std::move(placed));
   if (c.mpm.integrator == Integrator::symplectic_euler)
-    return explicit_grains(c, std::move(grains), std::move(box));
+    return explicit_grains(c, std::move(grains), std::move(box), smallest);
   return implicit_grains(c, std::move(grains), std::move(box), smallest);
 }
 

@@ -12,7 +12,9 @@
 namespace softgrain {
 namespace {
 
-bool is_updated_lagrangian(const Case& c) { return c.mpm.formulation == Formulation::updated_lagrangian; }
+bool is_updated_lagrangian(const Case& c) {
+  return is_elastic(c) && c.mpm.formulation == Formulation::updated_lagrangian;
+}
 bool is_implicit(const Case& c) {
   return c.mpm.integrator == Integrator::backward_euler && !is_updated_lagrangian(c);
 }
@@ -21,8 +23,9 @@ double smallest_radius(const Case& c) {
   return !is_in_a_box(c) ? c.grain.radius : c.sample.smallest_diameter / 2;
 }
 
-/// rho c^2 of pressure waves in elastic grains [Pa].
+/// rho c^2 of pressure waves in elastic grains [Pa]; 0 in rigid ones.
 double wave_modulus(const Case& c) {
+  if (is_rigid(c)) return 0;
   const double nu = c.mpm.material.poisson_ratio;
   return c.mpm.material.young_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
 }
@@ -36,6 +39,20 @@ double grain_area(const Case& c) {
   if (c.sample.sizes == SizeLaw::uniform)  // in the digits that snapshots have always had
     return c.sample.grains * std::numbers::pi / 12 * (a * a + a * b + b * b);
   return c.sample.grains * std::numbers::pi / 4 * mean_square_diameter(diameter_law(c.sample));
+}
+
+/// Of a grain over that of the circle of its diameter.
+double area_share(const Case& kind) {
+  if (!is_rigid(kind)) return 1;
+  if (kind.grain.shape == GrainShape::ellipse) return 1 / kind.grain.aspect;
+  const double turn = 2 * std::numbers::pi / kind.grain.sides;
+  return kind.grain.shape == GrainShape::polygon ? std::sin(turn) / turn : 1;
+}
+
+/// Of the circles of the grains of a kind [m^2], about: placed ones know only how many they are.
+double area_of_kind(const Case& kind) {
+  const double a = kind.sample.smallest_diameter, b = kind.sample.largest_diameter;
+  return kind.sample.placed.empty() ? grain_area(kind) : kind.sample.grains * (a * a + a * b + b * b);
 }
 
 /// Of all stages [s].
@@ -64,10 +81,17 @@ double box_height(const Case& c) {
   return std::sqrt(grain_area(c) / c.sample.packing_fraction / c.sample.aspect);
 }
 
+double first_packing_fraction(const Case& c) {
+  const double filled =
+      sum_of_kinds(c, [](const Case& kind) { return area_share(kind) * area_of_kind(kind); });
+  const double circles = sum_of_kinds(c, area_of_kind);
+  return c.sample.packing_fraction * (filled / circles);
+}
+
 double first_time_step(const Case& c) {
-  if (c.experiment.model == GrainModel::bpm) return c.time.step > 0 ? c.time.step : stable_bond_step(c);
+  if (is_bonded(c)) return c.time.step > 0 ? c.time.step : stable_bond_step(c);
   if (c.time.step > 0) return c.time.step;
-  if (is_implicit(c)) return 0.01 * smallest_radius(c) / c.loading.wall_velocity;
+  if (is_implicit(c) || is_rigid(c)) return 0.01 * smallest_radius(c) / c.loading.wall_velocity;
   if (!c.kinds.empty()) return least_of_kinds(c, first_time_step);
   // a share of the time in which a pressure wave crosses a cell; pi R^2 = 3.5 cells^2 h^2
   const double cell = smallest_radius(c) * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;
@@ -83,14 +107,17 @@ double wave_speed(const Case& c) {
 }
 
 bool remembers(const Case& c) {
-  return largest_of_kinds(
-             c, [](const Case& kind) { return law_choice(kind.mpm.law).remembers() ? 1.0 : 0.0; }) > 0;
+  return largest_of_kinds(c, [](const Case& kind) {
+           return is_elastic(kind) && law_choice(kind.mpm.law).remembers() ? 1.0 : 0.0;
+         }) > 0;
 }
 
-/// Of material, of elastic grains.
+/// Of material, of elastic grains; a rigid one counts the vertices of its outline.
 double points(const Case& c) {
-  return sum_of_kinds(c,
-                      [](const Case& kind) { return grains(kind) * 14 * kind.mpm.cells * kind.mpm.cells; });
+  return sum_of_kinds(c, [](const Case& kind) {
+    const int cells = kind.mpm.cells;
+    return grains(kind) * (is_rigid(kind) ? 4 * cells : 14 * cells * cells);
+  });
 }
 
 /// CPU time of an implicit step for each point [s]. In a box it grows with s = dt c/R, the wave times of a
@@ -114,8 +141,7 @@ double seconds_of_step(const Case& c, const Estimate& e) {
   constexpr int usual_sweeps = 17;
   const int sweeps =
       std::clamp(usual_sweeps, c.solver.min_sweeps, std::max(c.solver.min_sweeps, c.solver.max_sweeps));
-  if (c.experiment.model == GrainModel::bpm)
-    return e.contacts * sweeps * (c.solver.precision == Precision::single ? 4.1e-9 : 5.5e-9);
+  if (is_bonded(c)) return e.contacts * sweeps * (c.solver.precision == Precision::single ? 4.1e-9 : 5.5e-9);
   if (is_updated_lagrangian(c)) return e.particles * 1.1e-7;
   const double batches = std::ceil(grains(c) / 8);  // a batch of 8 grains costs the same when it is not full
   const double flow = !remembers(c) ? 1 : is_implicit(c) ? flow_factor_implicit : flow_factor_explicit;
@@ -127,8 +153,7 @@ double seconds_of_step(const Case& c, const Estimate& e) {
 /// it is bonded.
 double seconds_of_rows(const Case& c, const Estimate& e) {
   if (!is_in_a_box(c)) return 0;
-  return std::min<double>(c.output.samples, e.steps) * grains(c) *
-         (c.experiment.model == GrainModel::bpm ? 75e-6 : 17e-6);
+  return std::min<double>(c.output.samples, e.steps) * grains(c) * (is_bonded(c) ? 75e-6 : 17e-6);
 }
 
 /// Each ends with a snapshot.
@@ -139,7 +164,7 @@ std::size_t stages_written(const Case& c) {
 /// Snapshots and ParaView's files of a whole run [bytes], as measured by primary, by bonded grain (outlines)
 /// and by material point. A step writes one snapshot at most.
 double disk(const Case& c, const Estimate& e) {
-  const bool bpm = c.experiment.model == GrainModel::bpm;
+  const bool bpm = is_bonded(c);
   const double frames =
       std::min<double>(c.output.snapshots, e.steps) + static_cast<double>(stages_written(c));
   const double bytes_of_particle = (bpm ? 280 : 150) + (c.output.vtk ? 75 : 0);
@@ -150,7 +175,7 @@ double disk(const Case& c, const Estimate& e) {
 /// batch of 8 elastic grains takes the same when it is not full.
 double memory(const Case& c, const Estimate& e) {
   constexpr double program = 35e6;
-  if (c.experiment.model == GrainModel::bpm) return program + 2300 * e.particles + 7000 * grains(c);
+  if (is_bonded(c)) return program + 2300 * e.particles + 7000 * grains(c);
   const double in_batches = std::ceil(grains(c) / 8) * 8 * e.particles / grains(c);
   return program + 550 * e.particles + 350 * in_batches;
 }
@@ -161,14 +186,14 @@ double least_energy(const Case& c) {
   constexpr double strain = 1e-3;
   if (!c.kinds.empty() && c.sample.placed.empty()) return sum_of_kinds(c, least_energy);
   const double v = c.loading.wall_velocity, kinetic = c.grain.density * v * v / 2;
-  const bool implicit = c.experiment.model == GrainModel::mpm && is_implicit(c);
+  const bool implicit = !is_bonded(c) && is_implicit(c);
   const double elastic = implicit ? wave_modulus(c) * strain * strain / 2 : 0;
   return grain_area(c) * std::max(kinetic, elastic);
 }
 
 Estimate estimate(const Case& the_case) {
   constexpr double second = 1.0 / 3600;  // [h]
-  const bool bpm = the_case.experiment.model == GrainModel::bpm;
+  const bool bpm = is_bonded(the_case);
   Estimate result;
   result.particles = bpm ? primaries(the_case) : points(the_case);
   result.contacts = bpm ? 2.2 * result.particles : grains(the_case) * 3.3 * the_case.mpm.cells;

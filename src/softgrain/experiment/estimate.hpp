@@ -7,7 +7,8 @@ namespace softgrain {
 
 /// What a run will take, before it runs; a guide, good to a factor of about two.
 struct Estimate {
-  double particles = 0;  ///< bpm: primary particles; mpm: material points, 14 cells^2 in a grain
+  double particles = 0;  ///< bpm: primary particles; mpm: material points, 14 cells^2 in a grain, 4 cells
+                         ///< in a rigid one
   double contacts =
       0;  ///< bpm: 2.2 per primary, a dense packing has about 2; mpm: half of the outlines' vertices
   double steps = 0;  ///< of the loading path; preparing the sample comes on top
@@ -21,6 +22,10 @@ struct Estimate {
 /// mean size.
 double first_time_step(const Case& the_case);
 double box_height(const Case& the_case);
+
+/// Phi_0 at the start. sample.packing_fraction is that of the circles of the grains' diameters, of which an
+/// ellipse or a polygon fills a part.
+double first_packing_fraction(const Case& the_case);
 
 /// Energy below which a run's balance is not judged [J/m]: that of all grains at the speed of the walls, or,
 /// where an implicit step leaves forces as small as its tolerance, strained by 0.1 %.

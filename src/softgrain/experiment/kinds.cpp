@@ -9,7 +9,12 @@ Case case_of_kind(Case c, int k) {
   const Case::Kind kind = std::move(c.kinds[k]);
   c.kinds.clear();
   c.pairs.clear();
-  c.grain.density = kind.density;
+  c.experiment.model = kind.model;
+  c.grain = {.radius = c.grain.radius,
+             .density = kind.grain.density,
+             .shape = kind.grain.shape,
+             .aspect = kind.grain.aspect,
+             .sides = kind.grain.sides};
   c.mpm.law = kind.law;
   c.mpm.material = kind.material;
   c.mpm.cells = kind.cells;
@@ -21,7 +26,8 @@ Case case_of_kind(Case c, int k) {
 Case::Kind kind_of(const Case& c) {
   return {.name = {},
           .grains = c.sample.grains,
-          .density = c.grain.density,
+          .model = c.experiment.model,
+          .grain = c.grain,
           .law = c.mpm.law,
           .material = c.mpm.material,
           .cells = c.mpm.cells,

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/experiment/estimate.hpp"
 
 namespace softgrain {
 namespace {
@@ -181,7 +182,7 @@ LoadingFrame frame_of(const Case& c) {
   LoadingFrame frame{.measure = {},
                      .wall_velocity = c.loading.wall_velocity,
                      .aspect = c.sample.aspect,
-                     .packing_fraction = c.sample.packing_fraction};
+                     .packing_fraction = first_packing_fraction(c)};
   if (!is_in_a_box(c)) frame.measure = {StrainMeasure::Kind::of_grain, 2 * c.grain.radius};
   return frame;
 }
@@ -193,7 +194,7 @@ double last_strain(const Case& c) {
     return last;
   }
   if (c.loading.max_packing_fraction == 0 || !is_in_a_box(c)) return c.loading.max_strain;
-  const double filled = std::log(c.loading.max_packing_fraction / c.sample.packing_fraction);
+  const double filled = std::log(c.loading.max_packing_fraction / first_packing_fraction(c));
   return std::min(c.loading.max_strain, filled / (is_isotropic(c) ? 2 : 1));
 }
 

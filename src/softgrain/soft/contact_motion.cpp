@@ -20,7 +20,7 @@ double gap_now(const OutlineContact& contact, const OutlineState& state) {
     contact.for_each_vertex([&](int vertex, double weight) { apart += weight * state.position[vertex]; });
     return dot(apart, contact.normal) + contact.rise;
   }
-  const Vec<2> x = state.position[contact.vertex] - contact.image;
+  const Vec<2> x = contact.slave_at(state.position) - contact.image;
   const SpanCurve curve(state.position, contact.master);
   const double xi = curve.closest_to(x);
   const Vec<2> t = curve.tangent(xi);

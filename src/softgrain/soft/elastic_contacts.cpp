@@ -101,7 +101,7 @@ Mat<2> ElasticContacts::delassus_of(const Contact& contact) const {
       }
   };
   add(contact.slave_grain, 0, contact.of_slave());
-  if (contact.master_grain >= 0) add(contact.master_grain, 1, 5);
+  if (contact.master_grain >= 0) add(contact.master_grain, contact.of_slave(), contact.vertices);
   const std::array<Vec<2>, 2> axis{contact.normal, perpendicular(contact.normal)};
   Mat<2> W;
   for (int i = 0; i < 2; ++i)
@@ -146,7 +146,8 @@ const float* ElasticContacts::column(Contact& contact, int axis) {
   else
     fill<3>(contact, 0, contact.slave_grain, direction, column);
   if (contact.master_grain >= 0)
-    fill<4>(contact, 1, contact.master_grain, direction, column + grain_[contact.slave_grain].width);
+    fill<4>(contact, contact.of_slave(), contact.master_grain, direction,
+            column + grain_[contact.slave_grain].width);
   return column;
 }
 

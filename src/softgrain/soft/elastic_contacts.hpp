@@ -68,11 +68,11 @@ class ElasticContacts {
     const double* compliance = nullptr;  ///< of the whole outline
   };
   struct Contact {
-    std::array<int, 5> vertex{};     ///< number along its outline: the slave's, then the master's four
-    std::array<int, 5> velocity{};   ///< theirs in velocity_
-    std::array<double, 5> weight{};  ///< 1, -w_k; of a place at a wall w_k
+    std::array<int, 7> vertex{};     ///< number along its outline: the slave's, then the master's four
+    std::array<int, 7> velocity{};   ///< theirs in velocity_
+    std::array<double, 7> weight{};  ///< 1, -w_k; of a place at a wall or on a rigid arc w_k
     int vertices = 0;
-    int of_slave() const { return master_grain >= 0 ? 1 : vertices; }
+    int of_slave() const { return master_grain >= 0 ? vertices - 4 : vertices; }
     int slave_grain = 0, master_grain = -1;
     Vec<2> normal, start;        ///< (g, slip)/dt [m/s]
     Mat<2> delassus;             ///< W_cc

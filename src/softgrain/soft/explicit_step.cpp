@@ -47,6 +47,8 @@ ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains,
     mean_radius_ += grains.radius(g) / grains.size();
     smallest_radius_ = std::min(smallest_radius_, grains.radius(g));
     const Topology& shape = grains.topology(g);
+    body_of_grain_.push_back(shape.rigid() ? static_cast<int>(bodies_.body.size()) : -1);
+    if (shape.rigid()) bodies_.body.emplace_back();
     for (int i = shape.grid.outline_begin; i < shape.grid.nodes(); ++i)
       inverse_mass_.push_back(1 / (grains.material(grains.kind(g)).density * shape.node_volume[i] *
                                    grains.radius(g) * grains.radius(g)));
@@ -54,6 +56,9 @@ ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains,
   for (auto* of_vertices :
        {&outline_velocity_, &outline_velocity_start_, &outline_.start, &outline_.position})
     of_vertices->resize(grains.outline_size());
+  if (!bodies_.body.empty())
+    for (int v = 0; v < grains.outline_size(); ++v)
+      bodies_.of_vertex.push_back(body_of_grain_[grains.grain_of_vertex(v)]);
   batch_step_.resize(grains.batches.size());
 }
 
@@ -109,7 +114,7 @@ void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
     for (Vec<2>& p : impulse) p *= dt / impulse_time;  // the same force
   contacts = std::move(found);
 
-  LumpedContacts system(contacts, outline_, outline_velocity_, inverse_mass_, lumped_scratch_);
+  LumpedContacts system(contacts, outline_, outline_velocity_, inverse_mass_, bodies_, lumped_scratch_);
   PushedBodies pressed = pressed_walls(box, contacts, impulse, dt);
   system.push(pressed);
   kick(dt);
@@ -153,6 +158,7 @@ void ExplicitDynamics::fly_outline(double dt) {
       outline_.start[v] = lane_of(batch.position[i], lane);
       outline_.position[v] = outline_.start[v] + dt * outline_velocity_[v];
     });
+    if (batch.topology->rigid()) fly_rigid(dt, batch);
   });
 }
 
@@ -162,6 +168,7 @@ void ExplicitDynamics::kick(double dt) {
   parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
     thread_local WideVectors force;  // of this batch only: it stays in the processor's cache
     GrainBatch& batch = grains.batches[b];
+    if (batch.topology->rigid()) return kick_rigid(dt, batch, batch_step_[b]);
     if (options.damping_share > 0)
       for (std::size_t i = 0; i < batch.position.size(); ++i)
         batch.position[i] += Wide(options.damping_share * dt) * batch.velocity[i];
@@ -204,24 +211,32 @@ void ExplicitDynamics::kick_batch(double dt, const WideVectors& force, GrainBatc
   }
 }
 
-/// x+ = x + dt v+ of the outlines. The work over the step is that of a motion by dt (v+ + v)/2, in which
-/// M (v+ - v) does dK.
+/// x+ = x + dt v+ of a batch's outlines. The work over the step is that of a motion by dt (v+ + v)/2, in
+/// which M (v+ - v) does dK.
+void ExplicitDynamics::drift_batch(double dt, GrainBatch& batch, BatchStep& step) const {
+  grains.for_each_vertex(batch, [&](int v, int i, int lane) {
+    for (int d = 0; d < 2; ++d) batch.velocity[i][d].set(lane, outline_velocity_[v][d]);
+  });
+  const ReferenceGrid& grid = batch.topology->grid;
+  for (int i = grid.outline_begin, k = 0; i < grid.nodes(); ++i, ++k) {
+    const Vec<2, Wide> twice = step.velocity[k] + batch.velocity[i];
+    if (options.damping > 0)
+      step.damping -= grains.node_mass(batch, i) *
+                      (0.5 * dot(damping_.velocity_change(batch.position[i], step.velocity[k]), twice));
+    batch.position[i] += Wide(dt) * batch.velocity[i];
+    step.add_work(step.force[k], weight(batch, i), Wide(dt / 2) * twice);
+  }
+}
+
+/// The outlines at the end of the step.
 void ExplicitDynamics::drift_outline(double dt) {
   parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
     GrainBatch& batch = grains.batches[b];
     BatchStep& step = batch_step_[b];
-    grains.for_each_vertex(batch, [&](int v, int i, int lane) {
-      for (int d = 0; d < 2; ++d) batch.velocity[i][d].set(lane, outline_velocity_[v][d]);
-    });
-    const ReferenceGrid& grid = batch.topology->grid;
-    for (int i = grid.outline_begin, k = 0; i < grid.nodes(); ++i, ++k) {
-      const Vec<2, Wide> twice = step.velocity[k] + batch.velocity[i];
-      if (options.damping > 0)
-        step.damping -= grains.node_mass(batch, i) *
-                        (0.5 * dot(damping_.velocity_change(batch.position[i], step.velocity[k]), twice));
-      batch.position[i] += Wide(dt) * batch.velocity[i];
-      step.add_work(step.force[k], weight(batch, i), Wide(dt / 2) * twice);
-    }
+    if (batch.topology->rigid())
+      drift_rigid(dt, batch, step);
+    else
+      drift_batch(dt, batch, step);
     grains.for_each_vertex(
         batch, [&](int v, int i, int lane) { outline_.position[v] = lane_of(batch.position[i], lane); });
   });

@@ -10,6 +10,7 @@
 #include "softgrain/soft/lumped_contacts.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
 #include "softgrain/soft/pair_friction.hpp"
+#include "softgrain/soft/rigid_motion.hpp"
 #include "softgrain/soft/soft_grains.hpp"
 #include "softgrain/soft/stable_step.hpp"
 
@@ -70,6 +71,7 @@ class ExplicitDynamics {
   /// Of a batch: its outline's nodes at the start of the step, and the work over the step.
   struct BatchStep {
     WideVectors force, velocity;
+    RigidTwist twist;  ///< of rigid grains at the start of the step
     Wide internal = 0.0, gravity = 0.0, damping = 0.0;
     FlowOfStep flow;
 
@@ -89,7 +91,13 @@ class ExplicitDynamics {
   void fly_outline(double dt);
   void kick(double dt);
   void kick_batch(double dt, const WideVectors& force, GrainBatch& batch, BatchStep& step) const;
+  void drift_batch(double dt, GrainBatch& batch, BatchStep& step) const;
   void drift_outline(double dt);
+  void fly_rigid(double dt, const GrainBatch& batch);
+  void kick_rigid(double dt, GrainBatch& batch, BatchStep& step);
+  void drift_rigid(double dt, GrainBatch& batch, BatchStep& step);
+  void set_bodies(const GrainBatch& batch, const RigidTwist& twist);
+  RigidTwist twist_of_bodies(const GrainBatch& batch) const;
   void add_flow();
   void add_contact_work(double dt);
   void add_overlaps(SoftStepReport& report) const;
@@ -99,6 +107,8 @@ class ExplicitDynamics {
   OutlineState outline_;
   std::vector<Vec<2>> outline_velocity_, outline_velocity_start_;
   std::vector<double> inverse_mass_;  // (outline vertices)
+  LumpedBodies bodies_;               // the rigid grains
+  std::vector<int> body_of_grain_;    // or -1
   LumpedContacts::Scratch lumped_scratch_;
   std::vector<BatchStep> batch_step_;
   MassDamping damping_;

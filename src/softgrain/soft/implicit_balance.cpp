@@ -102,6 +102,7 @@ void ImplicitDynamics::add_work() {
         damping += m * Wide(1 / outline_.dt) * dot(velocity_start_[b][i] - flight_velocity(b, i), moved);
       gravity += m * (options.gravity[0] * moved[0] + options.gravity[1] * moved[1]);
     }
+    if (batch.topology->rigid()) inertia = inertia_work_of_rigid(b);
   });
   for (std::size_t b = 0; b < grains.batches.size(); ++b)
     for (int lane = 0; lane < Wide::size && grains.batches[b].grain[lane] >= 0; ++lane) {

@@ -45,6 +45,7 @@ ImplicitDynamics::Imbalance ImplicitDynamics::correct(bool first, bool same_matr
     WideVectors& f = force_[b];
     f.assign(f.size(), {});
     grains.scatter_outline(force, batch, f);
+    if (batch.topology->rigid()) return correct_rigid(b);
     kept_[b].assign(f.begin() + batch.topology->grid.outline_begin, f.end());
     matrix_[b].finish_solve(numbers(half_solved_[b]), numbers(kept_[b]), numbers(f));
     hold_correction(b);
@@ -128,6 +129,7 @@ void ImplicitDynamics::follow_secant(bool accelerated) {
       grains.batches[b].position[i] += moved_[b][i];
     }
     correction_[b] = f;
+    keep_rigid(b);
   });
 }
 
@@ -157,6 +159,7 @@ void ImplicitDynamics::follow_momentum(bool first, bool accelerated) {
       ahead[i] = beta * (f[i] + kept * ahead[i]);
       grains.batches[b].position[i] += f[i] + ahead[i];
     }
+    keep_rigid(b);
   });
 }
 

@@ -36,6 +36,7 @@ void ImplicitDynamics::start(double dt) {
       batch.position[i] += flying_[b] * Wide(dt) * flight_velocity(b, i) + carried;
       if (quasi_static(dt)) batch.position[i] += flying_[b] * fall;
     }
+    keep_rigid(b);
   });
   outline_.dt = dt;
   outline_.normals_at = quasi_static(dt) ? 1 : normals_of_fast_steps;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "softgrain/contact/nlgs.hpp"
 #include "softgrain/core/error.hpp"
@@ -58,10 +57,11 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains,
   explicit_step_ = stable_time_step(grains, 1);
   wave_time_ = smallest_radius_ / grains.fastest_wave();
   for (int k = 0; k < grains.kinds(); ++k) {
-    const auto& [law, density] = grains.material(k);
+    const auto& [law, density, rigid] = grains.material(k);
+    if (rigid) continue;
     const double speed = smallest_radius_ / (smallest_radius_ / wave_speed(law, density));  // in old digits
     const double force = least_force * density * speed * speed * mean_radius_;
-    least_contact_force_ = k == 0 ? force : std::min(least_contact_force_, force);
+    least_contact_force_ = least_contact_force_ == 0 ? force : std::min(least_contact_force_, force);
   }
   for (const GrainBatch& batch : grains.batches) {
     matrix_.emplace_back(batch.topology->pattern);
@@ -71,6 +71,7 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains,
   for (auto* vectors : {&start_, &velocity_start_, &half_solved_, &force_, &kept_, &correction_, &moved_})
     vectors->resize(grains.batches.size());
   pace_.resize(grains.batches.size());
+  rigid_.resize(grains.batches.size());
 }
 
 SoftStepReport ImplicitDynamics::step(double dt) {
@@ -151,79 +152,6 @@ int ImplicitDynamics::most_iterations(double dt) const {
   return quasi_static(dt) ? options.quasi_static_iterations : options.max_iterations;
 }
 
-/// A = M/t^2 + K(x) + c p/l on the outline; its Cholesky factor and the compliance of the outlines.
-ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, SoftStepReport& report) {
-  proximal_.assign(grains.outline_size(), {});
-  if (!contacts.empty()) {
-    const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
-    for (int v = 0; v < grains.outline_size(); ++v) {
-      const int g = grains.grain_of_vertex(v);
-      const double length =
-          2 * std::numbers::pi * grains.radius(g) / (grains.outline_end(g) - grains.outline_begin(g));
-      proximal_[v] = (proximal * norm(force[v]) / length) * Vec<2>{1, 1};
-    }
-  }
-  report.factorisations += batches();
-  const double t = step_of_matrix(dt);
-  const Precision precision =
-      t <= options.single_precision_steps * explicit_step_ ? Precision::single : Precision::full;
-  std::vector<int> failed(batches(), -1);
-  parallel_for(batches(), [&](int b) {
-    const GrainBatch& batch = grains.batches[b];
-    BatchedCholesky& A = matrix_[b];
-    A.clear(precision);
-    add_stiffness(grains, batch, A, dt);
-    WideVectors diagonal(batch.position.size());
-    grains.scatter_outline(proximal_, batch, diagonal);
-    for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
-      const Wide entry = grains.node_mass(batch, i) * Wide(1 / (t * t)) + diagonal[i][0];
-      A.add(i, i, {entry, 0.0, 0.0, entry});
-    }
-    failed[b] = batch.grain_in(A.factor());
-    if (failed[b] >= 0) return;
-    A.kept_inverse(compliance_[b]);
-    hold_in_compliance(b);
-  });
-  return none_failed(failed) ? Failure::none : Failure::indefinite_matrix;
-}
-
-/// r = f_ext - f_int - M (x - x_n - dt v_n)/dt^2, and A^-1 r on the outlines.
-ImplicitDynamics::Failure ImplicitDynamics::residual(double dt) {
-  outline_increment_.assign(grains.outline_size(), {});
-  std::vector<int> failed(batches(), -1);
-  parallel_for(batches(), [&](int b) {
-    const GrainBatch& batch = grains.batches[b];
-    failed[b] = batch.grain_in(internal_force(grains, batch, force_[b], dt));
-    if (failed[b] >= 0) return;
-    WideVectors& r = force_[b];
-    for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
-      const Wide m = grains.node_mass(batch, i), rate = m * Wide(1 / (dt * dt));
-      const Vec<2, Wide> flight = flight_velocity(b, i);
-      for (int d = 0; d < 2; ++d) {
-        const Wide inertia = rate * (batch.position[i][d] - start_[b][i][d] - Wide(dt) * flight[d]);
-        r[i][d] = m * Wide(options.gravity[d]) - r[i][d] - inertia;
-      }
-    }
-    half_solved_[b].resize(r.size());
-    kept_[b].resize(batch.topology->grid.outline_nodes());
-    matrix_[b].begin_solve(numbers(r), numbers(half_solved_[b]), numbers(kept_[b]));
-    hold_increment(b);
-    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
-      for (int v = 0; v < batch.topology->grid.outline_nodes(); ++v)
-        outline_increment_[grains.outline_begin(batch.grain[lane]) + v] = {kept_[b][v][0][lane],
-                                                                           kept_[b][v][1][lane]};
-  });
-  return none_failed(failed) ? Failure::none : Failure::inverted_point;
-}
-
-/// Remembers the first grain >= 0 as the one that failed.
-bool ImplicitDynamics::none_failed(std::span<const int> grain_of_batch) {
-  failed_grain_ = -1;
-  for (const int grain : grain_of_batch)
-    if (failed_grain_ < 0) failed_grain_ = grain;
-  return failed_grain_ < 0;
-}
-
 /// Contacts at the present positions, and their impulses by NLGS with warm start. True if it converged.
 bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   grains.gather_outline(outline_.position);
@@ -269,6 +197,7 @@ ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& re
   parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];
     failed[b] = batch.grain_in(internal_force(grains, batch, force_[b], dt));
+    if (batch.topology->rigid()) return end_rigid(b, dt);
     for (std::size_t i = 0; i < batch.position.size(); ++i)
       batch.velocity[i] = Wide(1 / dt) * (batch.position[i] - start_[b][i]);
   });

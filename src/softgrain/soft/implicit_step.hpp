@@ -14,6 +14,7 @@
 #include "softgrain/soft/history.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
 #include "softgrain/soft/pair_friction.hpp"
+#include "softgrain/soft/rigid_motion.hpp"
 #include "softgrain/soft/soft_grains.hpp"
 
 namespace softgrain {
@@ -116,6 +117,17 @@ class ImplicitDynamics {
     Wide couple = 0.0;                ///< c
   };
 
+  /// Of a batch of rigid grains, in an iteration (theory (71)): A on their three motions answers forces f_i
+  /// on the nodes by
+  ///   u_i = W^-1 sum_j f_j + a_i s^-1 sum_j a_j . f_j,
+  /// a_i the motion of node i in a turn about the place where A has no coupling.
+  struct RigidStep {
+    WideVectors arm;                               ///< a_i [m]
+    Wide compliance = 0.0, turn_compliance = 0.0;  ///< 1/W [m^2/N], 1/s [1/N]
+    Vec<2, Wide> way;                              ///< without contact forces: W^-1 sum f [m],
+    Wide turn = 0.0;                               ///< and s^-1 sum a . f
+  };
+
   bool quasi_static(double dt) const { return dt > options.quasi_static_from * wave_time_; }
   /// The step whose inertia A has [s].
   double step_of_matrix(double dt) const { return std::min(dt, options.inertia_of_at_most * wave_time_); }
@@ -132,6 +144,12 @@ class ImplicitDynamics {
   void hold_correction(std::size_t b);
   Failure factor(double dt, double proximal, SoftStepReport& report);
   Failure residual(double dt);
+  int solve_elastic(int b, double dt);
+  void solve_rigid(int b, double dt);
+  void correct_rigid(int b);
+  void keep_rigid(int b);
+  void end_rigid(int b, double dt);
+  Wide inertia_work_of_rigid(int b) const;
   bool solve_contacts(double dt, SoftStepReport& report);
   Imbalance correct(bool first, bool same_matrix);
   double largest_correction_of_grains();
@@ -174,6 +192,7 @@ class ImplicitDynamics {
   std::vector<Wide> pace_;                       // t_k of follow_momentum
   std::vector<Vec<2>> proximal_;                 // (outline vertices) c p/l on both components [N/m^2]
   std::vector<HeldSpin> held_;                   // per batch
+  std::vector<RigidStep> rigid_;                 // per batch
   std::vector<Vec<2>> outline_increment_;
   OutlineState outline_;
   std::vector<Wall<2>> walls_start_;

@@ -1,6 +1,7 @@
 #include "softgrain/soft/lumped_contacts.hpp"
 
 #include "softgrain/contact/law.hpp"
+#include "softgrain/contact/nlgs.hpp"
 #include "softgrain/core/parallel.hpp"
 
 namespace softgrain {
@@ -38,13 +39,17 @@ inline void LumpedContacts::apply_impulse(const Row& row, const Vec<2>& dp) {
 
 LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, const OutlineState& outline,
                                std::span<Vec<2>> velocity, std::span<const double> inverse_mass,
-                               Scratch& scratch)
-    : rows_(scratch.rows), strips_(scratch.strips), velocity_(velocity) {
+                               LumpedBodies& bodies, Scratch& scratch)
+    : rows_(scratch.rows),
+      strips_(scratch.strips),
+      velocity_(velocity),
+      of_bodies_(contacts, outline, velocity, inverse_mass, bodies) {
   strips_.sort(contacts, outline);
   rows_.resize(contacts.size());
   for_each_strip([&](int strip) {
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
-      rows_[k] = row_of(contacts[strips_.order[k]], outline, inverse_mass);
+      if (!of_bodies_.has(strips_.order[k]))
+        rows_[k] = row_of(contacts[strips_.order[k]], outline, inverse_mass);
       rows_[k].contact = strips_.order[k];
     }
   });
@@ -80,15 +85,22 @@ LumpedContacts::Row LumpedContacts::row_of(const OutlineContact& contact, const 
   return row;
 }
 
-Vec<2> LumpedContacts::relative_velocity(int contact) const { return relative_velocity(row(contact)); }
+Vec<2> LumpedContacts::relative_velocity(int contact) const {
+  return of_bodies_.has(contact) ? of_bodies_.relative_velocity(contact) : relative_velocity(row(contact));
+}
 
-void LumpedContacts::apply_impulse(int contact, const Vec<2>& dp) { apply_impulse(row(contact), dp); }
+void LumpedContacts::apply_impulse(int contact, const Vec<2>& dp) {
+  of_bodies_.has(contact) ? of_bodies_.apply_impulse(contact, dp) : apply_impulse(row(contact), dp);
+}
 
 void LumpedContacts::apply_impulses(std::span<const Vec<2>> impulse) {
   for_each_strip([&](int strip) {
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k)
-      if (const Vec<2>& p = impulse[rows_[k].contact]; p[0] > 0) apply_impulse(rows_[k], p);
+      if (const Vec<2>& p = impulse[rows_[k].contact]; p[0] > 0 && !of_bodies_.has(rows_[k].contact))
+        apply_impulse(rows_[k], p);
   });
+  for (const int c : of_bodies_.contacts())
+    if (impulse[c][0] > 0) of_bodies_.apply_impulse(c, impulse[c]);
 }
 
 /// Puts one contact right, and adds the violation that it showed.
@@ -114,13 +126,16 @@ Violation LumpedContacts::sweep(std::span<Vec<2>> impulse, std::span<const doubl
     Violation sum;
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
       const int c = rows_[k].contact;
-      if (pushed_ && pushed_->has(c)) continue;
+      if ((pushed_ && pushed_->has(c)) || of_bodies_.has(c)) continue;
       solve(rows_[k], impulse[c], friction[c], options, sum);
     }
     of_strip[strip] = sum;
   });
   Violation violation;
   for (const Violation& of_one : of_strip) violation += of_one;
+  for (const int c : of_bodies_.contacts())
+    if (!(pushed_ && pushed_->has(c)))
+      nlgs_update<2>(*this, c, impulse[c], friction[c], options.relaxation, violation);
   if (pushed_) pushed_->sweep<2>(*this, impulse, friction, options.relaxation, violation);
   return violation;
 }

@@ -7,6 +7,7 @@
 #include "softgrain/contact/pushed_bodies.hpp"
 #include "softgrain/contact/residual.hpp"
 #include "softgrain/soft/contact_strips.hpp"
+#include "softgrain/soft/lumped_bodies.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
 
 namespace softgrain {
@@ -20,12 +21,15 @@ class LumpedContacts {
  public:
   struct Scratch;
   /// velocity: (outline vertices) [m/s], u_found when constructed, then changed by the caller and by
-  /// impulses; inverse_mass: (outline vertices) [m/kg]. Keeps references to the velocities and the scratch.
+  /// impulses, as are those of the rigid bodies; inverse_mass: (outline vertices) [m/kg]. Keeps references to
+  /// the velocities, the bodies and the scratch.
   LumpedContacts(std::span<const OutlineContact> contacts, const OutlineState& outline,
-                 std::span<Vec<2>> velocity, std::span<const double> inverse_mass, Scratch& scratch);
+                 std::span<Vec<2>> velocity, std::span<const double> inverse_mass, LumpedBodies& bodies,
+                 Scratch& scratch);
 
   int size() const { return static_cast<int>(rows_.size()); }
   Mat<2> delassus_block(int contact) const {
+    if (of_bodies_.has(contact)) return of_bodies_.delassus_block(contact);
     const double W = row(contact).delassus;
     return Mat<2>::diagonal({W, W});
   }
@@ -33,7 +37,8 @@ class LumpedContacts {
   void apply_impulse(int contact, const Vec<2>& dp);
   /// The impulses of all contacts.
   void apply_impulses(std::span<const Vec<2>> impulse);
-  /// One pass of Gauss-Seidel, first over the even strips, then over the odd ones. As W is a multiple of 1, a
+  /// One pass of Gauss-Seidel, first over the even strips, then over the odd ones, then over the contacts of
+  /// rigid bodies, those of pushed bodies last. Where W is a multiple of 1, a
   /// contact is solved by
   ///   p_n = max(0, p_n - u_n/W),  p_t = p_t - u_t/W, cut to |p_t| <= mu p_n.
   Violation sweep(std::span<Vec<2>> impulse, std::span<const double> friction, const SolverOptions& options);
@@ -64,6 +69,7 @@ class LumpedContacts {
   std::vector<Row>& rows_;  // strip by strip
   ContactStrips& strips_;
   std::span<Vec<2>> velocity_;
+  BodyContacts of_bodies_;
   PushedBodies* pushed_ = nullptr;
 };
 

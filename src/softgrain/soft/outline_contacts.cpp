@@ -10,7 +10,7 @@
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/cell_grid.hpp"
 #include "softgrain/geometry/images.hpp"
-#include "softgrain/soft/span_curve.hpp"
+#include "softgrain/soft/facing.hpp"
 
 namespace softgrain {
 namespace {
@@ -27,17 +27,6 @@ constexpr double most_stretch = 0.01;
 /// Vertices that a thread takes at once.
 constexpr int part_size = 128;
 
-/// The vertices of one outline, in a ring.
-struct Ring {
-  int begin, end;
-  int next(int vertex) const { return vertex + 1 < end ? vertex + 1 : begin; }
-  int previous(int vertex) const { return vertex > begin ? vertex - 1 : end - 1; }
-};
-Ring ring_of(const SoftGrains& grains, int vertex) {
-  const int grain = grains.grain_of_vertex(vertex);
-  return {grains.outline_begin(grain), grains.outline_end(grain)};
-}
-
 /// Mean distance of a grain's outline vertices when it was round [m].
 double segment_length(const SoftGrains& grains, int grain) {
   return 2 * std::numbers::pi * grains.radius(grain) /
@@ -49,13 +38,6 @@ struct Nearest {
   int grain, vertex;
   double distance_squared;
 };
-
-/// The vertex of a master's outline where the segment starts that x faces, next to the vertex nearest to x.
-int facing_segment(const Ring& ring, std::span<const Vec<2>> position, const Vec<2>& x, int nearest) {
-  const int before = ring.previous(nearest);
-  const Vec<2> tangent = position[ring.next(nearest)] - position[before];
-  return dot(x - position[nearest], tangent) < 0 ? before : nearest;
-}
 
 /// True if x is surely more than `margin` outside the curve from the vertex `start` to the next. Over its
 /// chord the curve bulges by less than a quarter of the steeper of its slopes at the ends (Bezier's control
@@ -70,19 +52,6 @@ bool surely_outside(std::span<const Vec<2>> position, const Ring& ring, int star
   const double beyond = -dot(x - position[start], inward) - std::max(slope, 0.0) / 4;
   const double least = 1.125 * margin;
   return beyond > 0 && beyond * beyond > least * least * dot(chord, chord);
-}
-
-/// The place that a slave at x faces on the curve from the vertex `start` to the next.
-OutlineContact curve_contact(std::span<const Vec<2>> position, const Ring& ring, int slave, const Vec<2>& x,
-                             int start) {
-  const int end = ring.next(start);
-  OutlineContact contact{.vertex = slave, .master = {ring.previous(start), start, end, ring.next(end)}};
-  const SpanCurve curve(position, contact.master);
-  contact.share = curve.closest_to(x);
-  const Vec<2> t = curve.tangent(contact.share);
-  contact.normal = (-1 / norm(t)) * perpendicular(t);  // outward of a counter-clockwise outline
-  contact.gap = dot(x - curve.place(contact.share), contact.normal);
-  return contact;
 }
 
 /// The vertex v and its arc against a wall. With s = n . (x_next - x_previous)/2 and theta the arc's
@@ -103,30 +72,6 @@ OutlineContact wall_contact(const OutlineState& state, int wall_index, const std
   }
   contact.slip = dot(perpendicular(wall.normal), relative_displacement(contact, state));
   return contact;
-}
-
-/// The vertex of a master's outline nearest to x, walking downhill from `start`.
-int nearest_vertex(const Ring& ring, std::span<const Vec<2>> position, const Vec<2>& x, int start) {
-  const auto distance_squared = [&](int w) {
-    const Vec<2> d = position[w] - x;
-    return dot(d, d);
-  };
-  int nearest = start;
-  double least = distance_squared(start);
-  for (;;) {
-    const int before = ring.previous(nearest), after = ring.next(nearest);
-    const double d_before = distance_squared(before), d_after = distance_squared(after);
-    if (least <= d_before && least <= d_after) return nearest;
-    nearest = d_before < d_after ? before : after;
-    least = std::min(d_before, d_after);
-  }
-}
-
-/// Where the slave v at x faces a master at the outlines `position`, near the vertex `nearest`.
-OutlineContact facing_contact(std::span<const Vec<2>> position, const Ring& ring, int v, const Vec<2>& x,
-                              int nearest) {
-  nearest = nearest_vertex(ring, position, x, nearest);
-  return curve_contact(position, ring, v, x, facing_segment(ring, position, x, nearest));
 }
 
 /// The vertex of each grain within `reach` of vertex v that is nearest to it, sorted by grain.
@@ -213,6 +158,11 @@ void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineSta
     for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
       const double height = dot(x - state.walls[w].point, state.walls[w].normal);
       if (height > margin + segment_) continue;
+      if (const OutlineArc* arc = rigid_arc(grains, v)) {
+        const OutlineContact contact = rigid_wall_contact(grains, state, on_the_way_, w, v, *arc);
+        if (contact.gap < margin) part.contacts.push_back(contact);
+        continue;
+      }
       const Ring ring = ring_of(grains, v);
       const int grain = grains.grain_of_vertex(v), next = ring.next(v);
       const OutlineContact contact =
@@ -229,11 +179,20 @@ void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineSta
       const Vec<2> d = seen - state.position[candidate->nearest];
       if (dot(d, d) > 9 * segment_ * segment_) continue;
       const int start = facing_segment(ring, state.position, seen, candidate->nearest);
-      if (surely_outside(state.position, ring, start, seen, margin)) continue;
-      const double gap = curve_contact(state.position, ring, v, seen, start).gap;
+      const OutlineArc* arc = grains.topology(grains.grain_of_vertex(candidate->nearest)).rigid()
+                                  ? rigid_arc(grains, v)
+                                  : nullptr;
+      const double arc_rise = arc == nullptr ? 0 : segment_ / 2;  // more than that of an arc over its vertex
+      if (surely_outside(state.position, ring, start, seen, margin + arc_rise)) continue;
+      const double gap =
+          arc == nullptr ? curve_contact(state.position, ring, v, seen, start).gap
+                         : facing_arc(grains, state.position, ring, v, *arc, shift, candidate->nearest).gap;
       if (gap >= margin) continue;
-      const Vec<2> seen_on_the_way = on_the_way_[v] - shift + (1 - state.normals_at) * motion;
-      OutlineContact contact = facing_contact(on_the_way_, ring, v, seen_on_the_way, candidate->nearest);
+      const Vec<2> back = (1 - state.normals_at) * motion;
+      OutlineContact contact =
+          arc == nullptr
+              ? facing_contact(on_the_way_, ring, v, on_the_way_[v] - shift + back, candidate->nearest)
+              : facing_arc(grains, on_the_way_, ring, v, *arc, shift - back, candidate->nearest);
       contact.gap = gap;
       contact.image = shift;
       contact.image_motion = motion;
@@ -249,8 +208,7 @@ std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, 
   if (moved_far(state)) find_candidates(grains, state);
   on_the_way_.resize(state.position.size());
   parallel_for(static_cast<int>(parts_.size()), [&](int k) {
-    for (int v = parts_[k].begin; v < parts_[k].end; ++v)
-      on_the_way_[v] = state.start[v] + state.normals_at * (state.position[v] - state.start[v]);
+    for (int v = parts_[k].begin; v < parts_[k].end; ++v) on_the_way_[v] = state.on_the_way(v);
   });
   parallel_for(static_cast<int>(parts_.size()),
                [&](int k) { find_contacts(grains, state, margin * segment_, parts_[k]); });

@@ -16,7 +16,8 @@ std::array<double, 4> curve_weights(double xi);
 
 /// An outline vertex (the slave) against another grain's outline (the master), or against a wall. Both grains
 /// of a pair bring their vertices, so that neither outline sinks between the vertices of the other. To a wall
-/// a vertex brings its arc (OutlineArc): it faces the wall with the place of the arc that lies lowest.
+/// a vertex brings its arc (OutlineArc): it faces the wall with the place of the arc that lies lowest. So
+/// does a vertex of a rigid grain to another rigid one, which nothing makes fit it (docs/decisions/0047).
 ///
 /// Gaps are those at the end of the step; the place on a master and its normal are those at
 /// OutlineState::normals_at, half-way unless said otherwise: along a convex outline n . dx then is the change
@@ -29,18 +30,32 @@ struct OutlineContact {
       master{};      ///< vertices x_0 .. x_3 of the curve that it faces; at a wall its own, x_1 the slave
   double share = 0;  ///< xi: the slave faces c(xi); at a wall x_1 + xi (x_2 - x_0)/2 faces the wall
   double rise = 0;   ///< of the arc over that place, away from the wall [m]
-  Vec<2> normal{};   ///< unit, from the master to the slave: the gradient of the gap, at normals_at
-  double gap = 0;    ///< g = (x_slave - c) . n [m], open > 0
-  double slip = 0;   ///< tangential displacement of slave against master since the start of the step [m]
-  Vec<2> image{};    ///< from where the master is to where the slave sees it, at the end of the step [m]
+  double along = 0, inward = 0;  ///< of a rigid slave: where on its arc it touches (ArcPlace)
+  std::array<int, 2> beside{};   ///< then the vertices beside it
+  Vec<2> normal{};        ///< unit, from the master to the slave: the gradient of the gap, at normals_at
+  double gap = 0;         ///< g = (x_slave - c) . n [m], open > 0
+  double slip = 0;        ///< tangential displacement of slave against master since the start of the step [m]
+  Vec<2> image{};         ///< from where the master is to where the slave sees it, at the end of the step [m]
   Vec<2> image_motion{};  ///< of that image against the master over the step [m]
 
+  /// Where the slave is, of outlines at x [m].
+  Vec<2> slave_at(std::span<const Vec<2>> x) const {
+    if (inward == 0) return x[vertex];
+    const Vec<2>&before = x[beside[0]], &after = x[beside[1]];
+    return (1 - inward) * x[vertex] + ((inward - along) / 2) * before + ((inward + along) / 2) * after;
+  }
   /// Weights of the master's vertices, if there is one.
   std::array<double, 4> weights() const { return curve_weights(share); }
   /// visit(vertex, weight) for all vertices that take part: dg = n . sum weight dx.
   template <class Visit>
   void for_each_vertex(Visit&& visit) const {
-    visit(vertex, 1.0);
+    if (inward == 0) {
+      visit(vertex, 1.0);
+    } else {
+      visit(vertex, 1 - inward);
+      visit(beside[0], (inward - along) / 2);
+      visit(beside[1], (inward + along) / 2);
+    }
     if (wall >= 0) {
       if (share == 0) return;
       visit(master[0], -share / 2);
@@ -61,6 +76,11 @@ struct OutlineState {
   /// step is quasi-static and its end must be an equilibrium (docs/decisions/0026).
   double normals_at = 0.5;
   PeriodicCell<2> cell{};  ///< at the end of the step
+
+  /// Where place and normal are taken [m].
+  Vec<2> on_the_way(int vertex) const {
+    return start[vertex] + normals_at * (position[vertex] - start[vertex]);
+  }
 };
 
 /// Finds the contacts of outlines: which grains a vertex may meet is looked up among cells, and kept until

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
@@ -19,6 +20,9 @@ SoftGrains::SoftGrains(std::vector<GrainPlacement> grains, std::vector<GrainMate
     const GrainPlacement& placed = grains[g];
     require(placed.radius > 0, "grain {}: the radius must be > 0, got {} m", g, placed.radius);
     require(placed.kind >= 0 && placed.kind < kinds(), "grain {}: there is no kind {}", g, placed.kind);
+    require(placed.topology->rigid() == materials_[placed.kind].rigid,
+            "grain {}: its kind {} is {}rigid, its shape is not so", g, placed.kind,
+            materials_[placed.kind].rigid ? "" : "not ");
     shapes_.push_back(placed.topology);
     radius_.push_back(placed.radius);
     const int vertices = placed.topology->grid.outline_nodes();
@@ -71,6 +75,11 @@ double SoftGrains::mean_density() const {
   return mass_of_all / undeformed_area();
 }
 
+bool SoftGrains::has_rigid() const {
+  return std::any_of(materials_.begin(), materials_.end(),
+                     [](const GrainMaterial& material) { return material.rigid; });
+}
+
 bool SoftGrains::has_history() const {
   return std::any_of(materials_.begin(), materials_.end(),
                      [](const GrainMaterial& material) { return softgrain::has_history(material.law); });
@@ -79,21 +88,32 @@ bool SoftGrains::has_history() const {
 double SoftGrains::fastest_wave() const {
   double fastest = 0;
   for (const GrainMaterial& material : materials_)
-    fastest = std::max(fastest, wave_speed(material.law, material.density));
+    if (!material.rigid) fastest = std::max(fastest, wave_speed(material.law, material.density));
   return fastest;
 }
 
 double SoftGrains::largest_wave_modulus() const {
   double largest = 0;
   for (const GrainMaterial& material : materials_) {
+    if (material.rigid) continue;
     const double wave = wave_speed(material.law, material.density);
     largest = std::max(largest, material.density * wave * wave);
   }
   return largest;
 }
 
+double SoftGrains::radius_of_area(int grain) const {
+  const Topology& shape = topology(grain);
+  return shape.round ? radius(grain) : radius(grain) * std::sqrt(shape.area / std::numbers::pi);
+}
+
 double SoftGrains::mass(int grain) const {
   return materials_[kind(grain)].density * shapes_[grain]->area * radius_[grain] * radius_[grain];
+}
+
+std::array<int, 2> SoftGrains::beside(int vertex) const {
+  const int grain = grain_of_vertex(vertex), begin = outline_begin(grain), end = outline_end(grain);
+  return {vertex > begin ? vertex - 1 : end - 1, vertex + 1 < end ? vertex + 1 : begin};
 }
 
 void SoftGrains::gather_outline(std::vector<Vec<2>>& position) const {

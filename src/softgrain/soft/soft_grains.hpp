@@ -18,6 +18,7 @@ using WideVectors = std::vector<Vec<2, Wide>>;
 struct GrainMaterial {
   AnyLaw law;
   double density = 0;  ///< rho [kg/m^3]
+  bool rigid = false;  ///< they do not deform, and have no law
 };
 
 /// Eight grains of one topology and one kind, one in each lane. Lanes without a grain repeat the first one
@@ -51,11 +52,12 @@ struct GrainPlacement {
 };
 
 /// Soft grains by total-Lagrangian MPM: each has its own grid and velocity field; they meet only through
-/// contact. Per metre of depth, plane strain.
+/// contact. Per metre of depth, plane strain. Rigid ones among them have an outline and no cells
+/// (rigid_motion.hpp).
 class SoftGrains {
  public:
   /// materials: by kind. Grains of one topology and kind share batches. Raises UsageError for radii or
-  /// densities not positive.
+  /// densities not positive, and for a rigid grain of a kind that is not.
   SoftGrains(std::vector<GrainPlacement> grains, std::vector<GrainMaterial> materials);
   /// Of one kind; density rho [kg/m^3].
   SoftGrains(std::vector<GrainPlacement> grains, AnyLaw law, double density)
@@ -63,6 +65,8 @@ class SoftGrains {
 
   int size() const { return static_cast<int>(radius_.size()); }
   double radius(int grain) const { return radius_[grain]; }
+  /// Of the disk of the grain's undeformed area [m]: R of a disk.
+  double radius_of_area(int grain) const;
   int kinds() const { return static_cast<int>(materials_.size()); }
   int kind(int grain) const { return batches[place_[grain].batch].kind; }
   const GrainMaterial& material(int kind) const { return materials_[kind]; }
@@ -70,11 +74,12 @@ class SoftGrains {
   double density(const GrainBatch& batch) const { return materials_[batch.kind].density; }
   /// Of all grains together, undeformed [kg/m^3].
   double mean_density() const;
+  bool has_rigid() const;  ///< is a kind rigid?
   /// Does a kind flow, creep or relax?
   bool has_history() const;
-  /// The fastest of all kinds: of pressure waves in the unstrained material [m/s].
+  /// The fastest of all kinds: of pressure waves in the unstrained material [m/s]; 0 if all are rigid.
   double fastest_wave() const;
-  /// rho c^2 of the stiffest kind [Pa].
+  /// rho c^2 of the stiffest kind [Pa]; 0 if all are rigid.
   double largest_wave_modulus() const;
   /// rho pi R^2 for a disk [kg/m].
   double mass(int grain) const;
@@ -89,6 +94,8 @@ class SoftGrains {
   int outline_end(int grain) const { return outline_begin_[grain + 1]; }
   int outline_size() const { return outline_begin_.back(); }
   int grain_of_vertex(int vertex) const { return grain_of_vertex_[vertex]; }
+  /// The vertices before and after it on its outline.
+  std::array<int, 2> beside(int vertex) const;
   /// visit(vertex, node, lane) for all outline vertices of the grains of a batch.
   template <class Visit>
   void for_each_vertex(const GrainBatch& batch, Visit&& visit) const {

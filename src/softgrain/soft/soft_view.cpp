@@ -27,7 +27,7 @@ std::vector<ContactPoint> contact_points(const SoftView& view) {
               n = grains.outline_end(g) - begin;
     const Vec<2>&before = x[begin + (v - begin + n - 1) % n], &after = x[begin + (v - begin + 1) % n];
     const bool wall = contact.wall >= 0;
-    Vec<2> place = x[v];
+    Vec<2> place = contact.slave_at(x);
     if (wall)
       place +=
           0.5 * contact.share * (x[contact.master[2]] - x[contact.master[0]]) + contact.rise * contact.normal;
@@ -96,13 +96,61 @@ double least_J(const SoftGrains& grains) {
   return least;
 }
 
+namespace {
+
+/// Of a rigid grain: four points about its centre, as those of a cell are, that share its area and the mean
+/// stress of its contacts, A^-1 sum (x - x_c) (x) f. force: on the outline's vertices [N/m].
+struct RigidPoints {
+  std::array<Vec<2>, 4> position;
+  double radius = 0;
+  Mat<2> stress;
+};
+RigidPoints rigid_points(const SoftGrains& grains, int g, std::span<const Vec<2>> outline,
+                         std::span<const Vec<2>> force) {
+  const Topology& shape = grains.topology(g);
+  const double R = grains.radius(g), area = shape.area * R * R;
+  const Vec<2> centre = grains.node_position(g, 0);
+  RigidPoints points{.position = {}, .radius = std::sqrt(area / 4 / std::numbers::pi), .stress = {}};
+  double least = R;
+  for (int v = grains.outline_begin(g); v < grains.outline_end(g); ++v) {
+    const Vec<2> r = outline[v] - centre;
+    least = std::min(least, norm(r));
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j) points.stress(i, j) += r[i] * force[v][j] / area;
+  }
+  const double away = least / std::sqrt(6.0);  // of a square within: 1/sqrt(2), its Gauss points 1/sqrt(3)
+  points.position = {centre + Vec<2>{-away, -away}, centre + Vec<2>{away, -away},
+                     centre + Vec<2>{-away, away}, centre + Vec<2>{away, away}};
+  return points;
+}
+
+}  // namespace
+
 Scene soft_scene(const SoftView& view) {
   const SoftGrains& grains = view.grains;
   std::vector<Vec<2>> position;
   std::vector<double> radius, pressure, dilatation, stress, von_mises, plastic_strain;
   std::vector<std::int64_t> grain_of_point, grain_of_vertex;
+  std::vector<Vec<2>> outline;
+  grains.gather_outline(outline);
+  const std::vector<Vec<2>> forces = contact_forces(grains, view.contacts, view.impulse, view.impulse_time);
   for (int g = 0; g < grains.size(); ++g) {
     const Topology& shape = grains.topology(g);
+    grain_of_vertex.insert(grain_of_vertex.end(), grains.outline_end(g) - grains.outline_begin(g), g);
+    if (shape.rigid()) {
+      const RigidPoints points = rigid_points(grains, g, outline, forces);
+      for (const Vec<2>& x : points.position) {
+        position.push_back(x);
+        radius.push_back(points.radius);
+        pressure.push_back(-trace(points.stress) / 2);
+        von_mises.push_back(0);
+        plastic_strain.push_back(0);
+        dilatation.push_back(1);
+        stress.insert(stress.end(), points.stress.c.begin(), points.stress.c.end());
+        grain_of_point.push_back(g);
+      }
+      continue;
+    }
     const std::vector<PointState> states = point_states(grains, g);
     for (std::size_t p = 0; p < states.size(); ++p) {
       Vec<2> x;
@@ -119,11 +167,7 @@ Scene soft_scene(const SoftView& view) {
       stress.insert(stress.end(), states[p].stress.c.begin(), states[p].stress.c.end());
       grain_of_point.push_back(g);
     }
-    grain_of_vertex.insert(grain_of_vertex.end(), grains.outline_end(g) - grains.outline_begin(g), g);
   }
-  std::vector<Vec<2>> outline, forces;
-  grains.gather_outline(outline);
-  forces = contact_forces(grains, view.contacts, view.impulse, view.impulse_time);
   Scene scene;
   scene.particles["position"] = to_array(position);
   scene.particles["radius"] = {1, std::move(radius)};
@@ -203,8 +247,10 @@ void visit_contacts(const SoftGrains& grains, int walls, bool repeats, std::vect
                     std::vector<Vec<2>>& impulse, StateVisitor& visit) {
   std::vector<std::int64_t> bodies;
   std::vector<Vec<5>> places;
-  std::vector<Vec<2>> images;
+  std::vector<Vec<2>> images, arcs;
+  const bool rigid = grains.has_rigid();
   for (const OutlineContact& c : contacts) {
+    if (rigid) arcs.push_back({c.along, c.inward});
     bodies.insert(bodies.end(), {c.vertex, c.wall});
     bodies.insert(bodies.end(), c.master.begin(), c.master.end());
     places.push_back({c.share, c.normal[0], c.normal[1], c.gap, c.slip});
@@ -217,11 +263,15 @@ void visit_contacts(const SoftGrains& grains, int walls, bool repeats, std::vect
   if (repeats)
     visit.list({"contact_image", "m", Owner::contact, Role::start, "from the master to where it is met"},
                images);
+  if (rigid)
+    visit.list({"contact_arc", "", Owner::contact, Role::start,
+                "where on the arc of a rigid slave: along it, and inwards; 0 where it is the vertex"},
+               arcs);
   visit.list({"contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t)"}, impulse);
   if (!visit.reads()) return;
   check_bodies(bodies, grains.outline_size(), walls);
   if (places.size() != impulse.size() || (repeats && images.size() != impulse.size()) ||
-      bodies.size() != bodies_of_contact * places.size())
+      (rigid && arcs.size() != impulse.size()) || bodies.size() != bodies_of_contact * places.size())
     throw IoError("the snapshot's arrays of contacts have different lengths");
   contacts.clear();
   for (std::size_t c = 0; c < places.size(); ++c) {
@@ -230,6 +280,9 @@ void visit_contacts(const SoftGrains& grains, int walls, bool repeats, std::vect
                         .wall = body(1),
                         .master = {body(2), body(3), body(4), body(5)},
                         .share = places[c][0],
+                        .along = rigid ? arcs[c][0] : 0,
+                        .inward = rigid ? arcs[c][1] : 0,
+                        .beside = grains.beside(body(0)),
                         .normal = {places[c][1], places[c][2]},
                         .gap = places[c][3],
                         .slip = places[c][4],

@@ -17,6 +17,7 @@ constexpr double straight_turn = 1;
 constexpr double corner_turn = 2;
 
 BlockPattern pattern_of(const ReferenceGrid& grid) {
+  if (grid.cell.empty()) return {0, {}, 0};
   std::vector<std::array<int, 2>> edges;
   for (const auto& cell : grid.cell)
     for (int a = 1; a < 4; ++a)
@@ -89,6 +90,17 @@ Topology::Topology(ReferenceGrid reference_grid)
       for (int b = 0; b <= a; ++b)
         cell_blocks.push_back(
             {pattern.block(cell[a], cell[b]), a != b && pattern.transposed(cell[a], cell[b])});
+}
+
+Topology::Topology(ReferenceGrid outline, double moment, std::vector<char> corners)
+    : Topology(std::move(outline)) {
+  corner = std::move(corners);
+  for (std::size_t v = 0; v < corner.size(); ++v)
+    if (corner[v] != 0) arc[v] = {}, round = false;
+  double squares = 0;
+  for (const Vec<2>& X : grid.outline()) squares += dot(X, X);
+  node_volume.assign(grid.nodes(), moment / squares);
+  node_volume[0] = area - grid.outline_nodes() * (moment / squares);
 }
 
 }  // namespace softgrain

@@ -35,12 +35,20 @@ struct OutlineArc {
 struct Topology {
   /// Takes over the grid; finds points, volumes, and the symbolic factorisation with the outline last.
   explicit Topology(ReferenceGrid reference_grid);
+  /// Of a rigid grain: a grid without cells, whose node 0 is the centre of mass at the origin and whose other
+  /// nodes are the outline. Its nodes carry the grain's mass and its moment of inertia, those of the outline
+  /// equal shares: moment is the integral of |X|^2 over the body [R^4].
+  /// corner: of the outline's vertices those where it has none of its curve's smoothness; none: it is smooth.
+  Topology(ReferenceGrid outline, double moment, std::vector<char> corner = {});
+
+  bool rigid() const { return grid.cell.empty(); }
 
   ReferenceGrid grid;
   std::vector<MaterialPoint> points;  ///< (4 cells)
   std::vector<CellShape> cell_shapes;
   std::vector<double> node_volume;  ///< (nodes) fullness sum_p N_i V_p [R^2]: the lumped mass over rho R^2
   std::vector<OutlineArc> arc;      ///< (outline vertices)
+  std::vector<char> corner;         ///< (outline vertices) 1 where the outline has a corner; empty: nowhere
   double area = 0;                  ///< of the body, pi for a disk [R^2]
   bool round = false;               ///< the outline is a regular polygon about the origin
   BlockPattern pattern;

@@ -15,7 +15,7 @@ std::vector<Wide> grains_on_smooth_walls_alone(const SoftGrains& grains,
   std::vector<Wide> alone(grains.batches.size(), 0.0);
   for (std::size_t b = 0; b < alone.size(); ++b) {
     const GrainBatch& batch = grains.batches[b];
-    if (friction.at_walls(batch.kind) > 0) continue;
+    if (friction.at_walls(batch.kind) > 0 || batch.topology->rigid()) continue;
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
       if (const int g = batch.grain[lane]; batch.topology->round && at_wall[g] != 0 && at_grain[g] == 0)
         alone[b].set(lane, 1);

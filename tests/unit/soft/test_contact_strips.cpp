@@ -107,7 +107,9 @@ TEST_CASE(
   const std::vector<double> friction(n, 0.3);
   const std::vector<Vec<2>> start = packing.velocity;
   LumpedContacts::Scratch scratch;
-  LumpedContacts system(packing.contacts, packing.outline, packing.velocity, packing.inverse_mass, scratch);
+  LumpedBodies none;
+  LumpedContacts system(packing.contacts, packing.outline, packing.velocity, packing.inverse_mass, none,
+                        scratch);
   for (std::size_t c = 0; c < n; ++c)
     CHECK(system.relative_velocity(static_cast<int>(c))[0] ==
           doctest::Approx(packing.contacts[c].gap / packing.outline.dt));

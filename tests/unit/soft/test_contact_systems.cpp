@@ -224,7 +224,8 @@ TEST_CASE("the Delassus matrix of lumped outlines is H^T M^-1 H") {
   test::RandomNumbers random(9);
   for (int v = 0; v < s.grains.outline_size(); ++v) inverse_mass.push_back(random.uniform(1, 3));
   LumpedContacts::Scratch scratch;
-  LumpedContacts system(s.contacts, s.outline, s.vectors, inverse_mass, scratch);
+  LumpedBodies none;
+  LumpedContacts system(s.contacts, s.outline, s.vectors, inverse_mass, none, scratch);
   const Eigen::MatrixXd H = contact_map(s);
   Eigen::VectorXd M(2 * s.grains.outline_size());
   for (int v = 0; v < s.grains.outline_size(); ++v) M(2 * v) = M(2 * v + 1) = inverse_mass[v];
@@ -237,7 +238,8 @@ TEST_CASE("lumped contacts start from the gap that they were found with, and fol
   Scenery s;
   const std::vector<double> inverse_mass(s.grains.outline_size(), 1);
   LumpedContacts::Scratch scratch;
-  const LumpedContacts system(s.contacts, s.outline, s.vectors, inverse_mass, scratch);
+  LumpedBodies none;
+  const LumpedContacts system(s.contacts, s.outline, s.vectors, inverse_mass, none, scratch);
   for (int c = 0; c < system.size(); ++c)
     CHECK(system.relative_velocity(c)[0] == doctest::Approx(s.contacts[c].gap / dt));
   test::RandomNumbers random(6);

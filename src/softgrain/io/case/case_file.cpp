@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <optional>
 
 #include "softgrain/experiment/advice.hpp"
@@ -194,15 +195,20 @@ class CaseReader {
   void take_quasi_static_speeds() {
     Case& c = draft_.the_case;
     const bool shears = scope::shearing.covers(c) && c.loading.shear_rate == 0;
+    const double rate = quasi_static_rate(c);
     c.loading.quasi_static = shears || c.loading.wall_velocity == 0;
     for (Stage& stage : c.stages)
-      for (Drive& drive : stage.drives) {
-        if (!drive.quasi_static) continue;
-        drive.value = quasi_static_rate(c);
-        c.loading.quasi_static = true;
-      }
-    if (shears) c.loading.shear_rate = quasi_static_rate(c);
+      for (Drive& drive : stage.drives)
+        if (drive.quasi_static) {
+          drive.value = rate;
+          c.loading.quasi_static = true;
+        }
+    if (shears) c.loading.shear_rate = rate;
     if (c.loading.wall_velocity == 0) c.loading.wall_velocity = quasi_static_velocity(c);
+    if (c.loading.quasi_static && !std::isfinite(rate))
+      draft_.add(last_origin({"loading.wall_velocity", "loading.shear_rate", "experiment.loading"}),
+                 "\"quasi-static\" needs a stress: rigid grains have none of their own; name one, as "
+                 "loading.max_stress or that of a stage");
   }
 
   /// Walls go as fast as their stages say: the time step follows it, and averages of the stress.

@@ -29,10 +29,12 @@ std::vector<FormKey> all_forms() {
       only("experiment.dimension", "2", "dimensions of space"),
 
       {"kind.name", Takes::text, {}, "name of the kind, for [[pair]], for --set kind.NAME.key=value and for the column kind of a sample's file; several kinds need one each"},
-      stands_for("kind.model", {"experiment.model"}, "model of these grains", {"rigid"}),
+      stands_for("kind.model", {"experiment.model"}, "model of these grains; elastic and rigid kinds mix"),
       stands_for("kind.number", {"sample.grains"}, "grains of this kind in the box"),
       number("kind.share", "", positive, "share of the area of sample.grains grains that this kind has, in proportion; all kinds have one, or all a number"),
-      word("kind.shape", {"disk"}, {"ellipse", "polygon", "outline"}, "shape of the undeformed grain"),
+      stands_for("kind.shape", {"grain.shape"}, "shape of the undeformed grain; but of rigid grains it is a disk", {"outline"}),
+      stands_for("kind.aspect", {"grain.aspect"}, "long over short axis of an ellipse"),
+      stands_for("kind.sides", {"grain.sides"}, "of a regular polygon"),
       stands_for("kind.density", {"grain.density"}, "density of the material"),
       stands_for("kind.diameter", {"sample.smallest_diameter", "sample.largest_diameter"}, "diameter of all grains of this kind; a table for a law of diameters"),
       stands_for("kind.diameter.distribution", {"sample.sizes"}, "law of the diameters; left out: list where there are values, lognormal where there is a median"),
@@ -138,10 +140,8 @@ const std::vector<TableOfKeys>& form_tables() {
       {"kind",
        "A kind of grains, instead of [grain], [sample] and the material's keys of [mpm] or [bpm]. Several "
        "kinds\n"
-       "(elastic grains in a box) mix in one sample; what [grain], [mpm] and [sample] say then\nholds for "
-       "the "
-       "kinds that "
-       "do not say it themselves."},
+       "(elastic and rigid grains in a box) mix in one sample; what [grain], [mpm] and [sample] say\n"
+       "then holds for the kinds that do not say it themselves."},
       {"pair",
        "What acts between two kinds, or a kind and the walls, instead of [contact]; of several kinds\n"
        "contact.friction and "

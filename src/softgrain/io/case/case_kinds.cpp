@@ -32,13 +32,24 @@ const std::vector<FormKey>& written_keys() {
 /// "law.young_modulus".
 std::string name_within(const FormKey& form) { return form.name.substr(std::string_view("kind.").size()); }
 
+bool is_of_shape(const std::string& key) {
+  return key == "grain.shape" || key == "grain.aspect" || key == "grain.sides";
+}
+
+/// Does a kind have such a key? All elastic ones have the same.
+bool is_written(const Case& kind, const std::string& key) {
+  if (is_rigid(kind)) return !key.starts_with("mpm.") || key == "mpm.cells";
+  return !is_of_shape(key);
+}
+
 /// visit(name, value) of all keys of the k-th kind. Of placed grains their places say number and diameters.
 template <class Visit>
 void for_each_value(const Case& c, int k, const Visit& visit) {
   const Case kind = case_of_kind(c, k);
+  if (is_rigid(kind)) visit("model", "\"rigid\"");
   for (const FormKey& form : written_keys()) {
     const std::string& key = form.keys.front();
-    if (c.sample.placed.empty() || !key.starts_with("sample."))
+    if (is_written(kind, key) && (c.sample.placed.empty() || !key.starts_with("sample.")))
       visit(name_within(form), si_value(kind, *find_key(key)));
   }
 }

@@ -55,6 +55,8 @@ class FormReader {
   void keep_kind(const TomlValue::Table& table, Origin at);
   bool keep_key_of_kind(const std::string& name, const TomlValue& value, Origin origin);
   void finish_kind(KindText& text);
+  GrainModel model_of_silent_kinds() const;
+  void settle_models();
   void count_grains();
   void count_placed();
   void add_pair(int walls, const std::vector<std::string>& sides, const TomlValue& friction, Origin origin);

@@ -11,6 +11,7 @@
 #include "softgrain/io/case/case_value.hpp"
 #include "softgrain/io/case/form_reader.hpp"
 #include "softgrain/io/case/suggest.hpp"
+#include "softgrain/io/case/words.hpp"
 
 namespace softgrain {
 namespace {
@@ -129,18 +130,39 @@ void FormReader::finish_kind(KindText& text) {
     draft_.notes.push_back(fmt::format("{} (kind '{}')", note, text.name));
   for (Issue& issue : draft.issues) draft_.add(issue.origin, std::move(issue.message));
   Case& c = draft_.the_case;
-  if (draft.origins.contains("experiment.model")) {
-    const GrainModel model = draft.the_case.experiment.model;
-    if (draft_.origins.contains("experiment.model") && model != c.experiment.model)
-      draft_.add(
-          draft.origins["experiment.model"],
-          "not yet: grains of different models in one sample come with a later version; today all [[kind]] "
-          "have one kind.model");
-    c.experiment.model = model;
-    draft_.origins["experiment.model"] = draft.origins["experiment.model"];
-  }
   c.kinds.push_back(kind_of(draft.the_case));
-  c.kinds.back().name = text.name;
+  Case::Kind& kind = c.kinds.back();
+  kind.name = text.name;
+  if (kind.model == GrainModel::rigid) kind.law = {}, kind.material = {};
+  if (const auto said = draft.origins.find("experiment.model"); said != draft.origins.end())
+    draft_.origins.insert(*said);
+}
+
+/// Of kinds that do not say theirs: that of the file; else the one that another kind says, but rigid grains
+/// are always said to be so.
+GrainModel FormReader::model_of_silent_kinds() const {
+  std::optional<GrainModel> model;
+  if (draft_.origins.contains("experiment.model")) return draft_.the_case.experiment.model;
+  for (const KindText& kind : kinds_)
+    for (const auto& [form, value, origin] : kind.entries)
+      if (const auto* word = std::get_if<std::string>(&value.content);
+          form->name == "kind.model" && word != nullptr && (!model || *model == GrainModel::rigid))
+        model = value_of<GrainModel>(*word);
+  if (!model) return draft_.the_case.experiment.model;
+  return *model == GrainModel::rigid ? GrainModel::mpm : *model;
+}
+
+/// Elastic and rigid kinds mix; the case then is one of elastic grains.
+void FormReader::settle_models() {
+  Case& c = draft_.the_case;
+  const auto first = [&](GrainModel model) { return std::ranges::find(c.kinds, model, &Case::Kind::model); };
+  const auto has = [&](GrainModel model) { return first(model) != c.kinds.end(); };
+  if (has(GrainModel::bpm) && (has(GrainModel::mpm) || has(GrainModel::rigid)))
+    draft_.add(
+        kinds_[first(GrainModel::bpm) - c.kinds.begin()].at,
+        "not yet: bonded grains among others in one sample come with a later version; today \"mpm\" and "
+        "\"rigid\" mix: give each [[kind]] one of these as kind.model, or all of them \"bpm\"");
+  c.experiment.model = has(GrainModel::mpm) ? GrainModel::mpm : c.kinds.front().model;
 }
 
 /// Shares of area become numbers of grains.
@@ -215,12 +237,15 @@ void FormReader::finish_kinds() {
             fmt::format("sample.placed: a grain is of kind {}, but there is one kind", grain.kind));
     return;
   }
+  draft_.the_case.experiment.model = model_of_silent_kinds();
   for (KindText& kind : kinds_) finish_kind(kind);
+  settle_models();
   if (!draft_.issues.empty()) return;
   draft_.the_case.sample.placed.empty() ? count_grains() : count_placed();
   Case& c = draft_.the_case;
   // what the short form says is the first kind's
   Case first = case_of_kind(c, 0);
+  first.experiment.model = c.experiment.model;
   first.kinds = std::move(c.kinds);
   first.pairs = std::move(c.pairs);
   c = std::move(first);

@@ -60,10 +60,13 @@ std::vector<Key> all_keys() {
           "grains in a box; stages: what the tables [[stage]] say, as where they stand alone"),
       KEY(experiment.model, "", its_words(),
           "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other; mpm: an "
-          "elastic body by the material point method"),
+          "elastic body by the material point method; rigid: a rigid body, which meets others as those of mpm do"),
 
       KEY(grain.radius, "mm", positive(), "radius R of the grain", between_walls),
       KEY(grain.density, "kg/m^3", positive(), "density rho; the grain weighs rho pi R^2 per metre of depth"),
+      KEY(grain.shape, "", its_words(), "of a rigid grain; an ellipse and a polygon lie in the circle of the grain's diameter", with_rigid),
+      KEY(grain.aspect, "", from_to(1, 20), "long over short axis of an ellipse", ellipses),
+      KEY(grain.sides, "", from_to(3, 100), "of a regular polygon", polygons),
 
       KEY(bpm.primaries, "", from_to(fewest_primaries, 1e6),
           "number of primary particles in a grain; in a box: in each, or in the smallest (bpm.equal)", with_bpm),
@@ -82,7 +85,7 @@ std::vector<Key> all_keys() {
       KEY(bpm.library, "", from_to(1, 1000), "different aggregates of which the grains are copies (in a box)", bpm_in_a_box),
 
       KEY(mpm.law, "", its_words(), "law of the material", with_mpm),
-      KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points", with_mpm),
+      KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points, and 4 cells vertices on its outline, a rigid one too", with_outlines),
       KEY(mpm.integrator, "", its_words(), "backward Euler, or symplectic Euler with lumped masses", total_lagrangian),
       KEY(mpm.formulation, "", its_words(),
           "total_lagrangian: on a grid that fits the grain; updated_lagrangian: points move through a lattice that is "
@@ -92,7 +95,7 @@ std::vector<Key> all_keys() {
           "where contact acts; total_lagrangian: on the outline only", updated_lagrangian),
       KEY(mpm.damping, "1/s", at_least(0),
           "rate zeta of the damping f = -zeta m (v - v_walls), v_walls the velocity that the walls give to what lies "
-          "between them; 0: none; a free grain slows down by exp(-zeta t)", with_mpm),
+          "between them; 0: none; a free grain slows down by exp(-zeta t)", with_outlines),
       KEY(mpm.tolerance, "", positive(), "largest last correction of Newton's method over the mean grain radius", implicit),
 
       KEY(contact.friction, "", at_least(0),

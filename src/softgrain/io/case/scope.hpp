@@ -15,16 +15,23 @@ struct Scope {
 
 namespace scope {
 
-inline bool is_bpm(const Case& c) { return c.experiment.model == GrainModel::bpm; }
-inline bool is_mpm(const Case& c) { return c.experiment.model == GrainModel::mpm; }
+inline bool is_bpm(const Case& c) { return is_bonded(c); }
+inline bool is_mpm(const Case& c) { return is_elastic(c); }
+inline bool is_outlined(const Case& c) { return !is_bonded(c); }
 inline bool is_updated_lagrangian(const Case& c) {
   return is_mpm(c) && c.mpm.formulation == Formulation::updated_lagrangian;
 }
-inline bool is_total_lagrangian(const Case& c) { return is_mpm(c) && !is_updated_lagrangian(c); }
+inline bool is_total_lagrangian(const Case& c) { return is_outlined(c) && !is_updated_lagrangian(c); }
 
 inline constexpr Scope everywhere{"", [](const Case&) { return true; }};
 inline constexpr Scope with_bpm{"on bpm", is_bpm};
 inline constexpr Scope with_mpm{"on mpm", is_mpm};
+inline constexpr Scope with_outlines{"on mpm and rigid", is_outlined};
+inline constexpr Scope with_rigid{"on rigid", is_rigid};
+inline constexpr Scope ellipses{
+    "on rigid ellipses", [](const Case& c) { return is_rigid(c) && c.grain.shape == GrainShape::ellipse; }};
+inline constexpr Scope polygons{
+    "on rigid polygons", [](const Case& c) { return is_rigid(c) && c.grain.shape == GrainShape::polygon; }};
 inline constexpr Scope in_a_box{"in a box", is_in_a_box};
 inline constexpr Scope between_walls{"between walls", [](const Case& c) { return !is_in_a_box(c); }};
 inline constexpr Scope bpm_in_a_box{"on bpm in a box",

@@ -19,7 +19,15 @@ std::span<const Word<LoadingPath>> words_of() {
 
 template <>
 std::span<const Word<GrainModel>> words_of() {
-  static constexpr std::array words{Word{GrainModel::bpm, "bpm"}, Word{GrainModel::mpm, "mpm"}};
+  static constexpr std::array words{Word{GrainModel::bpm, "bpm"}, Word{GrainModel::mpm, "mpm"},
+                                    Word{GrainModel::rigid, "rigid"}};
+  return words;
+}
+
+template <>
+std::span<const Word<GrainShape>> words_of() {
+  static constexpr std::array words{Word{GrainShape::disk, "disk"}, Word{GrainShape::ellipse, "ellipse"},
+                                    Word{GrainShape::polygon, "polygon"}};
   return words;
 }
 

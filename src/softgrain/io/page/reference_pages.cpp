@@ -125,6 +125,8 @@ std::string checkpoint_page() {
       {"Elastic grains, implicit", fields_of(GrainModel::mpm, backward_euler, total_lagrangian)},
       {"Grains that flow, implicit",
        fields_of(GrainModel::mpm, backward_euler, total_lagrangian, MaterialLaw::von_mises)},
+      {"Rigid grains, also among elastic ones, implicit",
+       fields_of(GrainModel::rigid, backward_euler, total_lagrangian)},
       {"Elastic grains, explicit", fields_of(GrainModel::mpm, symplectic_euler, total_lagrangian)},
       {"Elastic grains, updated Lagrangian",
        fields_of(GrainModel::mpm, symplectic_euler, updated_lagrangian)}};

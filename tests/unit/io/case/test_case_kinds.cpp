@@ -5,6 +5,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/create.hpp"
+#include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/sample.hpp"
 #include "softgrain/io/case/case_extension.hpp"
@@ -70,7 +71,7 @@ TEST_CASE("each of several kinds has its law, density, sizes and number, and wha
   CHECK(lead.law == MaterialLaw::von_mises);
   CHECK(lead.material.yield_stress == 1e5);
   CHECK(lead.material.poisson_ratio == 0.3);
-  CHECK(lead.density == 11000);
+  CHECK(lead.grain.density == 11000);
   CHECK(lead.cells == 5);
   CHECK(lead.sizes.sizes == SizeLaw::list);
   CHECK(c.sample.grains == 10);
@@ -166,11 +167,75 @@ TEST_CASE("mistakes in several kinds are told with line, column and remedy") {
   CHECK(mentions(refusal(two + pair + pair), "two [[pair]] are between 'a' and 'b'"));
   CHECK(mentions(refusal(two, {"experiment.model=bpm"}), "not yet: several [[kind]] of bonded grains"));
   CHECK(mentions(refusal(two, {"experiment.loading=diametral"}), "several [[kind]] need a box"));
-  CHECK(mentions(refusal(two + "model = 'bpm'\n"), "not yet: grains of different models in one sample"));
+  CHECK(mentions(refusal(two + "model = 'bpm'\n"), "not yet: bonded grains among others in one sample"));
   CHECK(mentions(refusal(two, {"sample.grains=5"}), "the numbers of all [[kind]] are together 4"));
   const CaseReading vain = parse_case_with_notes(two + "law.yield_stress = 1e5\n", "case.toml");
   REQUIRE(vain.notes.size() == 1);
   CHECK(mentions(vain.notes[0], "mpm.yield_stress has no effect"));
+}
+
+namespace {
+
+const std::string soft_and_rigid = in_box + R"(
+[mpm]
+cells = 4
+law = "von_mises"
+yield_stress = "0.1 MPa"
+[sample]
+packing_fraction = 0.5
+[[kind]]
+name = "glass"
+model = "rigid"
+number = 2
+shape = "polygon"
+sides = 4
+density = "2500 kg/m^3"
+diameter = "1 mm"
+[[kind]]
+name = "lead"
+number = 3
+diameter = "2 mm"
+)";
+
+}  // namespace
+
+TEST_CASE("rigid kinds mix with elastic ones, and a resolved case says so") {
+  const Case c = read(soft_and_rigid);
+  REQUIRE(c.kinds.size() == 2);
+  CHECK(c.experiment.model == GrainModel::mpm);
+  const Case glass = case_of_kind(c, 0), lead = case_of_kind(c, 1);
+  CHECK(is_rigid(glass));
+  CHECK(glass.grain.shape == GrainShape::polygon);
+  CHECK(glass.grain.sides == 4);
+  CHECK(is_elastic(lead));
+  CHECK(lead.mpm.law == MaterialLaw::von_mises);
+  const std::string resolved = resolved_case_text(c);
+  const Case again = read(resolved);
+  CHECK(resolved_case_text(again) == resolved);
+  CHECK(is_rigid(case_of_kind(again, 0)));
+  CHECK(why_no_extension(c, again).empty());
+  CHECK(is_rigid(read(soft_and_rigid, {"kind.lead.model=rigid"})));
+  // without a word of it a kind beside a rigid one is elastic
+  std::string silent = soft_and_rigid;
+  silent.erase(silent.find("model = 'mpm'"), 13);
+  CHECK(is_elastic(case_of_kind(read(silent), 1)));
+}
+
+TEST_CASE("a square fills 2 over pi of its circle, and so do packing fractions of a sample of squares") {
+  const Case c =
+      read(soft_and_rigid, {"kind.lead.model=rigid", "kind.lead.shape=polygon", "kind.lead.sides=4"});
+  const Simulation simulation = test::simulation_of(c);
+  const double phi = test::value_of(row_of(simulation.observe()), "phi_0");
+  CHECK(phi == doctest::Approx(0.5 * 2 / 3.141592653589793).epsilon(1e-9));
+  CHECK(first_packing_fraction(c) == doctest::Approx(phi).epsilon(1e-9));
+}
+
+TEST_CASE("what rigid grains cannot do is told with a remedy") {
+  CHECK(mentions(refusal("[experiment]\nmodel = 'rigid'\n"),
+                 "case.toml:2:1: error: a rigid grain between two walls does not give way"));
+  CHECK(mentions(refusal(soft_and_rigid, {"kind.lead.shape=ellipse"}), "or of the model \"rigid\""));
+  CHECK(mentions(refusal(soft_and_rigid, {"kind.glass.sides=2"}), "kind.sides = 2 is out of range"));
+  CHECK(mentions(refusal(soft_and_rigid, {"kind.lead.model=bpm"}), "not yet: bonded grains among others"));
 }
 
 TEST_CASE("a run goes on with the kinds with which it began") {
