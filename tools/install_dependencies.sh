@@ -88,6 +88,7 @@ fi
 
 there=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' $(awk '{print $2}' <<<"$wanted") 2>/dev/null |
   awk '$1 == "installed" {print $2}' || true)
+command -v npm >/dev/null && there+=$'\nnpm'  # with a Node.js of another source, whose npm conflicts with Debian's
 missing=$(awk -v there=" ${there//$'\n'/ } " '!index(there, " " $2 " ")' <<<"$wanted")
 [[ -n $missing ]] || exit 0
 
