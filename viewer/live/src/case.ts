@@ -19,7 +19,7 @@ export const DEFAULTS: Choices = {
   grains: 30,
   friction: 0.3,
   poisson: 0.45,
-  speed: 1,
+  speed: 0.1,
   seed: 1,
 };
 
@@ -41,8 +41,8 @@ export const RANGES: Record<"grains" | "friction" | "poisson" | "seed", [number,
 
 /** Of wall speeds [m/s]: bonds ask for short steps, and a slow wall for very many of them. */
 export const SPEEDS: Record<Model, [number, number]> = {
-  elastic: [0.1, 10],
-  plastic: [0.1, 10],
+  elastic: [0.01, 5],
+  plastic: [0.01, 5],
   bonded: [2, 10],
 };
 
@@ -100,15 +100,15 @@ function grainLines(c: Choices): string {
     return `
 [bpm]
 primaries = 60
-library = 6
+library = 3
 `;
   const plastic = `law = "von_mises"
-yield_stress = 5e4  # Pa
-hardening_modulus = 1e5  # Pa
+yield_stress = 5e5  # Pa
+hardening_modulus = 1e6  # Pa
 `;
   return `
 [mpm]
-${c.model === "plastic" ? plastic : `law = "${c.law}"\n${c.law === "mooney_rivlin" ? "c01 = 5e4  # Pa\n" : ""}`}young_modulus = 1e6  # Pa
+${c.model === "plastic" ? plastic : `law = "${c.law}"\n${c.law === "mooney_rivlin" ? "c01 = 5e5  # Pa\n" : ""}`}young_modulus = 1e7  # Pa
 poisson_ratio = ${c.poisson}
 cells = 6
 `;

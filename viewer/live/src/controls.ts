@@ -2,8 +2,8 @@ import { short } from "../../src/units";
 import { allowed, Choices, LAWS, Model, RANGES, SPEEDS } from "./case";
 
 const ABOUT: Record<Model, string> = {
-  elastic: "Rubber-like grains of material points (MPM), E = 1 MPa, touching by exact nonsmooth contact.",
-  plastic: "The same points, but of a metal-like material: they flow at 50 kPa and keep their shape.",
+  elastic: "Rubber-like grains of material points (MPM), E = 10 MPa, touching by exact nonsmooth contact.",
+  plastic: "The same points, but of a metal-like material: they flow at 0.5 MPa and keep their shape.",
   bonded:
     "Aggregates of 60 rigid disks that attract each other (BPM): a grain flows, but may not be pressed denser.",
 };

@@ -31,7 +31,7 @@ class Curve {
     private y: Quantity,
   ) {
     const caption = document.createElement("figcaption");
-    caption.append(`${y.label} over ${x.label}`, this.reading);
+    caption.append(`${y.label} over ${x.label.split(" ").at(-1)}`, this.reading);
     this.figure.append(caption);
     parent.append(this.figure);
     this.chart = new uPlot(this.options(), [null, [[], []]] as unknown as uPlot.AlignedData, this.figure);

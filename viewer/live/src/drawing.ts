@@ -6,8 +6,8 @@ import { Picture } from "./messages";
 const MARGIN = 18;
 const CHAIN = "230, 41, 71";
 /** A pressure and a force that are small for grains of the page [Pa], [N/m]. */
-const SMALL_PRESSURE = 5e3;
-const SMALL_FORCE = 5;
+const SMALL_PRESSURE = 5e4;
+const SMALL_FORCE = 20;
 
 /** Draws grains, walls and force chains on a canvas. */
 export class Drawing {
@@ -55,7 +55,12 @@ export class Drawing {
     pen.lineWidth = 1.2 / this.scale;
     if (picture.disks.length > 0) this.drawDisks(picture.disks, colours);
     else this.drawOutlines(picture, colours);
-    if (chains) this.drawChains(picture.chains);
+    if (chains) {
+      pen.beginPath();
+      pen.rect(0, 0, width, height);
+      pen.clip();
+      this.drawChains(picture.chains);
+    }
     pen.restore();
     this.drawWalls(width, height, goal, ink);
   }
@@ -106,7 +111,7 @@ export class Drawing {
     const { pen } = this;
     const forces = chains.filter((_, k) => k % 5 === 4);
     this.force += 0.2 * (Math.max(SMALL_FORCE, quantile(forces, 0.97)) - this.force);
-    const widest = 9 / this.scale;
+    const widest = 7 / this.scale;
     for (let k = 0; k < chains.length; k += 5) {
       const [x0, y0, x1, y1, force] = chains.subarray(k, k + 5);
       const share = Math.min(1.3, force / this.force);

@@ -29,6 +29,7 @@ class Page {
   private goal = 1;
   private paused = false;
   private over = false;
+  private ready = false; // the solver
   private secondsPerStep = 0;
   private curvesAt = 0;
   private count = { since: 0, frames: 0, pictures: 0 };
@@ -67,11 +68,13 @@ class Page {
   }
 
   begin(): void {
+    if (!this.ready) return;
     this.curves.reset();
     this.drawing.reset();
     this.over = false;
     say("");
     this.pause(false);
+    hint("Preparing the grains ...");
     this.link.say({ kind: "begin", text: this.caseText, pace: pace(this.choices) });
   }
 
@@ -80,10 +83,12 @@ class Page {
   }
 
   private hear(message: FromSolver): void {
-    if (message.kind === "ready") this.begin();
-    else if (message.kind === "began") {
+    if (message.kind === "ready") {
+      this.ready = true;
+      this.begin();
+    } else if (message.kind === "began") {
       this.startHeight = this.goal = message.height;
-      $(".hint").hidden = false;
+      hint("Drag the top wall down");
     } else if (message.kind === "over") {
       this.over = true;
       say(message.words + ". Start again, or choose other grains.");
@@ -99,7 +104,7 @@ class Page {
   private drive(height: number): void {
     if (this.over) return;
     this.goal = Math.min(this.startHeight, Math.max(LOWEST * this.startHeight, height));
-    $(".hint").hidden = true;
+    hint("");
     this.stale = true;
     if (this.paused) this.pause(false);
     this.link.say({ kind: "drive", height: this.goal });
@@ -179,6 +184,10 @@ class Page {
     this.curves.redraw();
     this.stale = true;
   }
+}
+
+function hint(words: string): void {
+  $(".hint").textContent = words;
 }
 
 function say(words: string): void {
