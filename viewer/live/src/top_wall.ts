@@ -15,8 +15,6 @@ export class TopWall {
     handle.addEventListener("pointerdown", (event) => {
       handle.setPointerCapture(event.pointerId);
       this.held = drawing.toPixels(this.height) - this.above(event);
-      event.preventDefault();
-      handle.focus();
     });
     handle.addEventListener("pointermove", (event) => {
       if (this.held !== null) drive(drawing.toHeight(this.above(event) + this.held));
