@@ -46,8 +46,11 @@ export const SPEEDS: Record<Model, [number, number]> = {
   bonded: [2, 10],
 };
 
-/** At the end of the way of the top wall: Phi_0 goes from 0.7 to 1.09. */
-const LAST_STRAIN = 0.44;
+/** Packing fraction at the start: few grains find no places in a dense box. At the end, by areas at the start. */
+const firstFraction = (c: Choices): number => (c.grains < 10 ? 0.5 : 0.7);
+const LAST_FRACTION = 1.09;
+const lastStrain = (c: Choices): number => Number(Math.log(LAST_FRACTION / firstFraction(c)).toFixed(3));
+
 /** The way of the top wall in a step [m]: of soft grains 0.016 of a mean radius. */
 const WAY = { elastic: 15e-6, plastic: 15e-6, bonded: 1e-6 };
 /** Longest step of bonded grains [s]. */
@@ -57,7 +60,7 @@ const LONGEST_BOND_STEP = 0.25e-6;
 const SECONDS_DOWN = 4;
 
 /** How far the top wall comes down, as a share of the height at the start. */
-export const LOWEST = Math.exp(-LAST_STRAIN);
+export const lowest = (c: Choices): number => Math.exp(-lastStrain(c));
 
 function timeStep(c: Choices): number {
   const step = WAY[c.model] / c.speed;
@@ -66,8 +69,8 @@ function timeStep(c: Choices): number {
 
 /** Steps a second that the solver makes at most. */
 export function pace(c: Choices): number {
-  const height = Math.sqrt(c.grains * 4.15e-6); // of a square box of grains of 1.4 to 2.4 mm, filled to 0.7
-  return ((1 - LOWEST) * height) / (c.speed * timeStep(c)) / SECONDS_DOWN;
+  const height = Math.sqrt((c.grains * 2.9e-6) / firstFraction(c)); // of a square box of grains of 1.4 to 2.4 mm
+  return ((1 - lowest(c)) * height) / (c.speed * timeStep(c)) / SECONDS_DOWN;
 }
 
 /** Text of a case file, in SI; solver/live_case.cpp reads this form of it, and so does the program. */
@@ -86,12 +89,12 @@ step = ${timeStep(c)}  # s
 
 [sample]
 grains = ${c.grains}
-packing_fraction = 0.7
+packing_fraction = ${firstFraction(c)}
 seed = ${c.seed}
 
 [loading]
 wall_velocity = ${c.speed}  # m/s
-max_strain = ${LAST_STRAIN}
+max_strain = ${lastStrain(c)}
 `;
 }
 

@@ -1,7 +1,7 @@
 // The live page: choices, the worker that computes, and the pictures that it sends.
 import { gradient } from "../../src/colours";
 import { withUnit } from "../../src/units";
-import { caseText, Choices, fromHash, LOWEST, pace, toHash } from "./case";
+import { caseText, Choices, fromHash, lowest, pace, toHash } from "./case";
 import { Controls } from "./controls";
 import { Curves } from "./curves";
 import { Drawing } from "./drawing";
@@ -44,7 +44,7 @@ class Page {
   }
 
   private listen(): void {
-    $(".squeeze").addEventListener("click", () => this.drive(LOWEST * this.startHeight));
+    $(".squeeze").addEventListener("click", () => this.drive(0));
     $(".release").addEventListener("click", () => this.drive(this.startHeight));
     $(".pause").addEventListener("click", () => this.pause(!this.paused));
     $(".reset").addEventListener("click", () => this.begin());
@@ -103,7 +103,7 @@ class Page {
 
   private drive(height: number): void {
     if (this.over) return;
-    this.goal = Math.min(this.startHeight, Math.max(LOWEST * this.startHeight, height));
+    this.goal = Math.min(this.startHeight, Math.max(lowest(this.choices) * this.startHeight, height));
     hint("");
     this.stale = true;
     if (this.paused) this.pause(false);

@@ -113,11 +113,12 @@ class Loop {
   begin(text: string, pace: number): void {
     const words = begin(text);
     this.over = words !== "";
+    this.changed = this.underWay = false;
     if (this.over) return port.postMessage({ kind: "over", words });
     this.pace = pace;
     this.goal = this.height = module.live_start_height();
     this.resting = STEPS_TO_REST;
-    this.paused = this.underWay = false;
+    this.paused = false;
     this.spent = { seconds: 0, steps: 0 };
     port.postMessage({ kind: "began", height: this.height });
     this.send();
