@@ -89,20 +89,17 @@ export class Drawing {
     this.pen.globalAlpha = 1;
   }
 
+  /** A little smaller than they are, so that they can be told apart without lines. */
   private drawDisks(disks: Float32Array, colours: string[]): void {
     const path = colours.map(() => new Path2D());
     for (let k = 0; k < disks.length; k += 4) {
       const [x, y, r, grain] = disks.subarray(k, k + 4);
-      path[grain].moveTo(x + r, y);
-      path[grain].arc(x, y, r, 0, 2 * Math.PI);
+      path[grain].moveTo(x + 0.94 * r, y);
+      path[grain].arc(x, y, 0.94 * r, 0, 2 * Math.PI);
     }
-    this.pen.lineWidth /= 2;
     colours.forEach((colour, g) => {
       this.pen.fillStyle = colour;
       this.pen.fill(path[g]);
-      this.pen.globalAlpha = 0.35;
-      this.pen.stroke(path[g]);
-      this.pen.globalAlpha = 1;
     });
   }
 

@@ -183,7 +183,7 @@ class LivePage(unittest.TestCase):
         self.assertEqual(self.browser.run("location.hash"), "#grains=3")
         self.browser.run("document.querySelector('[value=bonded]').click()")
         self.browser.wait("live.picture.disks.length > 0", 120)
-        self.assertEqual(self.browser.run("location.hash"), "#model=bonded&grains=3")
+        self.assertEqual(self.browser.run("location.hash"), "#model=bonded&grains=3&speed=2")  # bonds ask for a faster wall
 
 
 if __name__ == "__main__":
