@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that softgrain needs; the only place that names them. Does nothing when all are there.
-#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, fit, movie, bench, peers, viewer, torture, cluster, shells, paraview, clang, wasm
+#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, fit, movie, bench, peers, wheel, viewer, torture, cluster, shells, paraview, clang, wasm
 #   tools/install_dependencies.sh --list                 the table below
 # Why each was chosen: docs/decisions/0002-dependencies.md
 set -euo pipefail
@@ -48,6 +48,10 @@ bench      libsiconos-numerics-dev a peer to measure against
 bench      liblammps-dev           a peer to measure against
 peers      libboost-filesystem-dev builds geomechanics/mpm, a peer whose source is yours
 peers      libopenmpi-dev          builds geomechanics/mpm
+wheel      python3-build           builds a wheel
+wheel      python3-setuptools      calls CMake for it
+wheel      python3-wheel           packs it
+wheel      python3-pybind11        is found by Python, as pip's is
 viewer     chromium                tests the page of softgrain report
 viewer     npm                     tools/check_viewer
 torture    tmux                    a real terminal for the test of signals
@@ -72,7 +76,7 @@ groups="build libraries python tests pictures"
 while (($#)); do
   case "$1" in
     --list) table && exit 0 ;;
-    --with) groups+=" ${2:?--with needs a group: checks, docs, fit, movie, bench, peers, viewer, torture, cluster, shells, paraview, clang or wasm}" && shift 2 ;;
+    --with) groups+=" ${2:?--with needs a group: checks, docs, fit, movie, bench, peers, wheel, viewer, torture, cluster, shells, paraview, clang or wasm}" && shift 2 ;;
     *) sed -n '2,4s/^# //p' "$0" >&2 && exit 2 ;;
   esac
 done
