@@ -164,14 +164,17 @@ class LivePage(unittest.TestCase):
         self.browser.run("window.scrollTo(0, document.body.scrollHeight)")
         self.picture("phone-below")
 
-    def test_drawing_does_not_wait_for_the_solver(self):
-        """While 60 grains are solved the page draws on; rates are printed, since they depend on the machine."""
-        for grains in (30, 60):
-            self.open(f"grains={grains}")
-            self.squeeze_to(0.25)
+    def test_a_picture_is_drawn_in_a_thirtieth_of_a_second(self):
+        """The median of 21, so that a busy machine does not decide; rates are printed, since they depend on it."""
+        draw = ("[...Array(21)].map(() => { const start = performance.now(); live.drawing.draw(live.picture, "
+                "live.startHeight, live.goal, true); return performance.now() - start; }).sort((a, b) => a - b)[10]")
+        for choices in ("grains=30", "grains=60", "model=bonded&speed=5"):
+            self.open(choices)
+            self.squeeze_to(0.1)
+            median = self.browser.run(draw)
             rates = self.browser.run("({...document.body.dataset, step: 1e3 * live.secondsPerStep})")
-            print(f"{grains} grains at strain 0.25: {rates}")
-            self.assertGreater(int(rates["frames"]), 10)
+            print(f"{choices}: a picture takes {median:.1f} ms; {rates}")
+            self.assertLess(median, 1000 / 30)
 
     def test_a_choice_begins_anew_and_stands_in_the_address(self):
         self.open("grains=5")
