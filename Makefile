@@ -1,6 +1,6 @@
 # Short names for the commands of everyday work; each recipe also works typed by hand.
 .DEFAULT_GOAL := help
-.PHONY: help demo test check docs torture gallery bench clean
+.PHONY: help demo test check docs live torture gallery bench clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-7s %s\n", $$1, $$2}' Makefile
@@ -36,6 +36,10 @@ docs: ## the documentation as a site, build/site/index.html, with every link che
 	@tools/install_dependencies.sh --with docs
 	tools/check_docs
 	tools/build_site
+
+live: ## the live page, build/live/index.html: the solver in a browser, by Emscripten (minutes); make docs takes it in
+	@tools/install_dependencies.sh --with wasm --with viewer
+	tools/build_live
 
 torture: ## long forms of the reliability tests, fuzzers, sanitizers, builds compared, 64-bit ARM (hours)
 	@tools/install_dependencies.sh --with torture

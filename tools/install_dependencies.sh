@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that softgrain needs; the only place that names them. Does nothing when all are there.
-#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, fit, movie, bench, peers, viewer, torture, cluster, shells, paraview, clang, wasm
+#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, fit, movie, bench, peers, wheel, viewer, torture, cluster, shells, paraview, clang, wasm
 #   tools/install_dependencies.sh --list                 the table below
 # Why each was chosen: docs/decisions/0002-dependencies.md
 set -euo pipefail
@@ -48,6 +48,10 @@ bench      libsiconos-numerics-dev a peer to measure against
 bench      liblammps-dev           a peer to measure against
 peers      libboost-filesystem-dev builds geomechanics/mpm, a peer whose source is yours
 peers      libopenmpi-dev          builds geomechanics/mpm
+wheel      python3-build           builds a wheel
+wheel      python3-setuptools      calls CMake for it
+wheel      python3-wheel           packs it
+wheel      python3-pybind11        is found by Python, as pip's is
 viewer     chromium                tests the page of softgrain report
 viewer     npm                     tools/check_viewer
 torture    tmux                    a real terminal for the test of signals
@@ -74,7 +78,7 @@ groups="build libraries python tests pictures"
 while (($#)); do
   case "$1" in
     --list) table && exit 0 ;;
-    --with) groups+=" ${2:?--with needs a group: checks, docs, fit, movie, bench, peers, viewer, torture, cluster, shells, paraview, clang or wasm}" && shift 2 ;;
+    --with) groups+=" ${2:?--with needs a group: checks, docs, fit, movie, bench, peers, wheel, viewer, torture, cluster, shells, paraview, clang or wasm}" && shift 2 ;;
     *) sed -n '2,4s/^# //p' "$0" >&2 && exit 2 ;;
   esac
 done
@@ -90,6 +94,7 @@ fi
 
 there=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' $(awk '{print $2}' <<<"$wanted") 2>/dev/null |
   awk '$1 == "installed" {print $2}' || true)
+command -v npm >/dev/null && there+=$'\nnpm'  # with a Node.js of another source, whose npm conflicts with Debian's
 missing=$(awk -v there=" ${there//$'\n'/ } " '!index(there, " " $2 " ")' <<<"$wanted")
 [[ -n $missing ]] || exit 0
 

@@ -22,6 +22,7 @@ class Files(unittest.TestCase):
         self.assertEqual(json.loads(text("codemeta.json"))["version"], version)
         self.assertEqual(re.search(r"^version: (\S+)", text("CITATION.cff"), re.M)[1], version)
         self.assertEqual(softgrain.__version__, version)
+        self.assertEqual(re.search(r'^version = "(\S+)"', text("pyproject.toml"), re.M)[1], version)
 
     def test_every_work_cited_in_the_paper_is_in_its_bibliography_and_no_other(self):
         cited = set(re.findall(r"@([a-z]+\d{4})", text("paper/paper.md")))

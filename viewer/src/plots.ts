@@ -164,7 +164,7 @@ class Plot {
 }
 
 /** Through all points in the order of time. */
-const polyline: uPlot.Series.PathBuilder = (u, index) => {
+export const polyline: uPlot.Series.PathBuilder = (u, index) => {
   const [xs, ys] = u.data[index] as unknown as number[][];
   const path = new Path2D();
   let pen = false;
@@ -186,7 +186,7 @@ const polyline: uPlot.Series.PathBuilder = (u, index) => {
 };
 
 /** A little more than the data, from 0 where that is near. */
-function padded(_: uPlot, low: number | null, high: number | null): [number, number] {
+export function padded(_: uPlot, low: number | null, high: number | null): [number, number] {
   if (low === null || high === null || !Number.isFinite(low + high)) return [0, 1];
   const pad = 0.04 * (high - low) || Math.abs(high) || 1;
   return [low >= 0 && low < 0.3 * high ? Math.min(0, low) : low - pad, high + pad];

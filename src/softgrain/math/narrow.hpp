@@ -9,7 +9,7 @@ namespace softgrain {
 
 /// Eight numbers in single precision: half the memory and half the work of Wide, for what is corrected later.
 struct Narrow {
-  using Floats = float __attribute__((vector_size(32)));
+  using Floats = EightFloats;
   Floats lanes{};
 
   Narrow() = default;
