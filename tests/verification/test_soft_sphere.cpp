@@ -102,7 +102,7 @@ void check_errors(const Pressed& pressed, const std::vector<double>& limits) {
 }  // namespace
 
 TEST_CASE("a coarse elastic sphere between two walls bears the force of the converged solution within 6 %") {
-  const Pressed pressed = press_one(4, 0.45, 0.008, 0.2, at_45);
+  const Pressed pressed = press_one(4, 0.45, 0.005, 0.2, at_45);
   check_errors(pressed, {.06, .06, .06, .06});
   CHECK(std::abs(pressed.energy_error) < 1e-12);
 }

@@ -26,7 +26,7 @@ std::vector<ContactPoint> contact_points(const SoftView& view);
 std::vector<ContactPointOf<3>> contact_points(const SoftViewOf<3>& view);
 
 /// Of all grains; their area is pi R^2 times the mean J of a disk, by the polygons of the vertices (theory
-/// (54)). In space volume and area by the smooth outlines.
+/// (54)). In space volume and area by the smooth outlines, as if they held the body's volume at rest.
 Outlines outlines_of(const SoftGrains& grains);
 std::vector<SurfaceMeasure> outlines_of(const SolidGrains& grains);
 

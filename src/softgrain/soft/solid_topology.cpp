@@ -55,6 +55,7 @@ SolidTopology::SolidTopology(SolidGrid reference_grid)
     quads.push_back(quad);
   }
   patches = patch_nets(quads, quads_round);
+  const double inside = measure_surface(patches, &grid.node[at(grid.outline_begin)]).volume;
   for (std::size_t p = 0; p < points.size(); ++p) {
     if (p % 8 == 0) cell_shapes.emplace_back();
     BrickShape& shape = cell_shapes.back();
@@ -64,6 +65,7 @@ SolidTopology::SolidTopology(SolidGrid reference_grid)
     for (std::size_t a = 0; a < 8; ++a)
       node_volume[at(grid.cell[p / 8][a])] += grid.fullness * points[p].shape[a] * points[p].volume;
   }
+  patch_fullness = volume / inside;
   for (BrickShape& shape : cell_shapes) shape.inverse_of_all = 1 / shape.inverse_of_all;
 }
 

@@ -35,6 +35,7 @@ struct SolidTopology {
   std::vector<PatchNet> patches;    ///< (quads) of the outline
   /// (outline vertices) the quads round each; -1 behind the third of a vertex of valence 3
   std::vector<std::array<int, 4>> quads_round;
+  double patch_fullness = 1;  ///< volume of the body over that within the smooth outline
 };
 
 }  // namespace softgrain

@@ -96,8 +96,13 @@ std::vector<SurfaceMeasure> outlines_of(const SolidGrains& grains) {
   std::vector<Vec<3>> x;
   grains.gather_outline(x);
   std::vector<SurfaceMeasure> measures;
-  for (int g = 0; g < grains.size(); ++g)
-    measures.push_back(measure_surface(grains.topology(g).patches, &x[at(grains.outline_begin(g))]));
+  for (int g = 0; g < grains.size(); ++g) {
+    const SolidTopology& shape = grains.topology(g);
+    SurfaceMeasure measure = measure_surface(shape.patches, &x[at(grains.outline_begin(g))]);
+    measure.volume *= shape.patch_fullness;
+    measure.area *= std::pow(shape.patch_fullness, 2.0 / 3);
+    measures.push_back(measure);
+  }
   return measures;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 #include "softgrain/soft/curve_weights.hpp"
 
@@ -163,16 +162,20 @@ SurfacePatch::Nearest SurfacePatch::nearest(const Vec<3>& x, double u, double v)
 }
 
 SurfaceMeasure measure_surface(std::span<const PatchNet> patches, const Vec<3>* position) {
-  constexpr double gauss = std::numbers::inv_sqrt3;
+  struct Place {
+    double at, weight;
+  };
+  constexpr double out = 0.7745966692414834 / 2;  // sqrt(3/5)/2
+  constexpr std::array gauss{Place{0.5 - out, 5.0 / 18}, Place{0.5, 8.0 / 18}, Place{0.5 + out, 5.0 / 18}};
   SurfaceMeasure measure;
   for (const PatchNet& net : patches) {
     const SurfacePatch patch(net, position);
-    for (const double u : {0.5 * (1 - gauss), 0.5 * (1 + gauss)})
-      for (const double v : {0.5 * (1 - gauss), 0.5 * (1 + gauss)}) {
-        const auto c = patch.at(u, v);
+    for (const Place& u : gauss)
+      for (const Place& v : gauss) {
+        const auto c = patch.at(u.at, v.at);
         const Vec<3> n = cross(c.along_u, c.along_v);
-        measure.volume += dot(c.place - position[0], n) / 12;
-        measure.area += norm(n) / 4;
+        measure.volume += u.weight * v.weight / 3 * dot(c.place - position[0], n);
+        measure.area += u.weight * v.weight * norm(n);
       }
   }
   return measure;

@@ -52,7 +52,7 @@ class SurfacePatch {
   std::array<Vec<3>, 16> net_;
 };
 
-/// Volume and area of a closed outline in its present shape, by 2 x 2 Gauss points of each patch:
+/// Volume and area of a closed outline in its present shape, by 3 x 3 Gauss points of each patch:
 ///   V = 1/3 sum c . (dc/du x dc/dv), A = sum |dc/du x dc/dv|.
 SurfaceMeasure measure_surface(std::span<const PatchNet> patches, const Vec<3>* position);
 
