@@ -26,6 +26,9 @@ const std::vector<Reference> at_30{{.05, .01673}, {.1, .0502}, {.15, .0975},
 const std::vector<Reference> at_49{{.05, .01625}, {.1, .04817}, {.15, .0931},
                                    {.2, .1510},   {.3, .3156},  {.4, .5785}};
 
+/// Below d/R = 0.1 a column of two still swings.
+const std::vector<Reference> from_a_tenth(at_45.begin() + 1, at_45.end());
+
 struct Pressed {
   std::vector<double> errors;  ///< of the force at each approach, relative
   double volume = 0;           ///< over that at rest, at the end
@@ -108,9 +111,8 @@ TEST_CASE("a coarse elastic sphere between two walls bears the force of the conv
 }
 
 TEST_CASE("two coarse spheres on each other bear what one bears, and gain no momentum") {
-  const Pressed pressed = press(columns_of_two(4, 0.45), 4, 2, 0.45, 0.006, 0.15, at_45);
-  CHECK(std::abs(pressed.errors[1]) < 0.1);
-  CHECK(std::abs(pressed.errors[2]) < 0.05);
+  const Pressed pressed = press(columns_of_two(4, 0.45), 4, 2, 0.45, 0.006, 0.15, from_a_tenth);
+  check_errors(pressed, {.1, .05});
   CHECK(pressed.momentum < 1e-13);
 }
 
@@ -127,6 +129,6 @@ TEST_CASE("finer spheres between two walls meet the converged force, for three P
 
 TEST_CASE("two finer spheres on each other bear what one bears within 5 %") {
   if (!test::torture()) return;
-  const Pressed pressed = press(columns_of_two(6, 0.45), 4, 2, 0.45, 0.004, 0.2, at_45);
-  check_errors(pressed, {.1, .05, .05, .05});
+  const Pressed pressed = press(columns_of_two(6, 0.45), 4, 2, 0.45, 0.004, 0.2, from_a_tenth);
+  check_errors(pressed, {.05, .05, .05});
 }

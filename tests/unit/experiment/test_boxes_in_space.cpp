@@ -64,7 +64,7 @@ Box<3> unit_cube() {
 
 }  // namespace
 
-TEST_CASE("an isotropic path in space brings six walls to the strain; a compaction the top wall alone") {
+TEST_CASE("an isotropic path in space brings six walls to the strain, a compaction the top wall alone") {
   const auto lengths_after = [](Part part) {
     Box<3> box = unit_cube();
     NoGrains model;
