@@ -274,7 +274,7 @@ def _arrays(scene, name):
 
 def _tangential_force(force, impulse):
     """Of bonded grains, whose scene has the normal forces of the contacts that push, from all impulses (p_n, p_t)."""
-    pushing = impulse[impulse[:, 0] > 0] if impulse.ndim == 2 else np.empty((0, 2))
+    pushing = impulse[impulse[:, 0] > 0] if impulse.ndim == 2 and impulse.shape[1] == 2 else np.empty((0, 2))
     if len(pushing) != len(force):
         return {}
     return {"tangential_force": force * pushing[:, 1] / pushing[:, 0]}
