@@ -8,7 +8,7 @@ namespace softgrain {
 namespace {
 
 /// Of an explicit step: the mesh's own vibrations are damped.
-constexpr double damping_share = 0.5;
+constexpr double solid_damping_share = 0.5;
 
 /// Of the longest stable step: cells that flatten leave less of it.
 constexpr double step_share = 0.6;
@@ -30,7 +30,8 @@ double longest_solid_step(const Case& c) {
   const auto shape = std::make_shared<const SolidTopology>(ball_grid(c.mpm.cells));
   const double radius = is_in_a_box(c) ? diameter_law(c.sample).least() / 2 : c.grain.radius;
   return longest_stable_step(
-      solid_grains(c, {{.topology = shape, .radius = radius, .centre = {}, .velocity = {}}}), damping_share);
+      solid_grains(c, {{.topology = shape, .radius = radius, .centre = {}, .velocity = {}}}),
+      solid_damping_share);
 }
 
 PlacedModelOf<3> solid_grains_of(const Case& c) {
@@ -53,8 +54,9 @@ PlacedModelOf<3> solid_grains_of(const Case& c) {
   }
   SolidGrains grains = solid_grains(c, std::move(placed));
   for (int k = 0; k < grains.kinds(); ++k) require_solid(grains.material(k));
-  const double dt = c.time.step > 0 ? c.time.step : step_share * longest_stable_step(grains, damping_share);
-  const ExplicitOptionsOf<3> options{.damping_share = damping_share,
+  const double dt =
+      c.time.step > 0 ? c.time.step : step_share * longest_stable_step(grains, solid_damping_share);
+  const ExplicitOptionsOf<3> options{.damping_share = solid_damping_share,
                                      .friction = c.contact.friction,
                                      .wall_friction = c.contact.wall_friction,
                                      .damping = c.mpm.damping};

@@ -6,16 +6,14 @@
 namespace softgrain {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-LaplaceRows laplace_rows(const SolidGrid& grid, const std::vector<SolidPoint>& points) {
+LaplaceRows rows_of_laplace(const SolidGrid& grid, const std::vector<SolidPoint>& points) {
   std::vector<std::map<int, double>> rows(grid.node.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
     const auto& cell = grid.cell[p / 8];
     for (std::size_t a = 0; a < 8; ++a)
       for (std::size_t b = 0; b < 8; ++b)
         if (a != b)
-          rows[at(cell[a])][cell[b]] += points[p].volume * dot(points[p].gradient[a], points[p].gradient[b]);
+          rows[cell[a]][cell[b]] += points[p].volume * dot(points[p].gradient[a], points[p].gradient[b]);
   }
   LaplaceRows laplace{.begin = {0}, .column = {}, .weight = {}};
   for (const auto& row : rows) {
@@ -30,10 +28,10 @@ LaplaceRows laplace_rows(const SolidGrid& grid, const std::vector<SolidPoint>& p
 
 /// Of the outline, from its first vertex on.
 std::vector<std::array<int, 4>> quads_of_vertices(const SolidGrid& grid) {
-  std::vector<std::array<int, 4>> quads(at(grid.outline_nodes()), {-1, -1, -1, -1});
+  std::vector<std::array<int, 4>> quads(grid.outline_nodes(), {-1, -1, -1, -1});
   for (std::size_t q = 0; q < grid.quad.size(); ++q)
     for (const int node : grid.quad[q]) {
-      auto& list = quads[at(node - grid.outline_begin)];
+      auto& list = quads[node - grid.outline_begin];
       std::size_t free = 0;
       while (list[free] >= 0) ++free;
       list[free] = static_cast<int>(q);
@@ -46,7 +44,7 @@ std::vector<std::array<int, 4>> quads_of_vertices(const SolidGrid& grid) {
 SolidTopology::SolidTopology(SolidGrid reference_grid)
     : grid(std::move(reference_grid)),
       points(material_points(grid)),
-      laplace(laplace_rows(grid, points)),
+      laplace(rows_of_laplace(grid, points)),
       node_volume(grid.node.size(), 0),
       quads_round(quads_of_vertices(grid)) {
   std::vector<std::array<int, 4>> quads;
@@ -55,7 +53,7 @@ SolidTopology::SolidTopology(SolidGrid reference_grid)
     quads.push_back(quad);
   }
   patches = patch_nets(quads, quads_round);
-  const double inside = measure_surface(patches, &grid.node[at(grid.outline_begin)]).volume;
+  const double inside = measure_surface(patches, &grid.node[grid.outline_begin]).volume;
   for (std::size_t p = 0; p < points.size(); ++p) {
     if (p % 8 == 0) cell_shapes.emplace_back();
     BrickShape& shape = cell_shapes.back();
@@ -63,7 +61,7 @@ SolidTopology::SolidTopology(SolidGrid reference_grid)
     shape.inverse_of_all += 8 * points[p].volume;
     volume += grid.fullness * points[p].volume;
     for (std::size_t a = 0; a < 8; ++a)
-      node_volume[at(grid.cell[p / 8][a])] += grid.fullness * points[p].shape[a] * points[p].volume;
+      node_volume[grid.cell[p / 8][a]] += grid.fullness * points[p].shape[a] * points[p].volume;
   }
   patch_fullness = volume / inside;
   for (BrickShape& shape : cell_shapes) shape.inverse_of_all = 1 / shape.inverse_of_all;

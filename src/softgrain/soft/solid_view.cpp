@@ -9,15 +9,13 @@
 namespace softgrain {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 /// Forces of contacts on the outlines' vertices [N].
 std::vector<Vec<3>> forces_on_vertices(const SoftViewOf<3>& view) {
-  std::vector<Vec<3>> force(at(view.grains.outline_size()));
+  std::vector<Vec<3>> force(view.grains.outline_size());
   for (std::size_t c = 0; c < view.contacts.size(); ++c) {
     if (!(view.impulse[c][0] > 0)) continue;
     const Vec<3> f = (1 / view.impulse_time) * impulse_vector(view.contacts[c], view.impulse[c]);
-    view.contacts[c].for_each_vertex([&](int vertex, double weight) { force[at(vertex)] += weight * f; });
+    view.contacts[c].for_each_vertex([&](int vertex, double weight) { force[vertex] += weight * f; });
   }
   return force;
 }
@@ -77,10 +75,10 @@ std::vector<ContactPointOf<3>> contact_points(const SoftViewOf<3>& view) {
   for (std::size_t c = 0; c < view.contacts.size(); ++c) {
     const SurfaceContact& contact = view.contacts[c];
     if (!(view.impulse[c][0] > 0)) continue;
-    Vec<3> place = x[at(contact.vertex)];
+    Vec<3> place = x[contact.vertex];
     if (contact.wall >= 0 && !contact.is_vertex_at_wall()) {
       place = {};
-      contact.for_each_vertex([&](int v, double weight) { place += weight * x[at(v)]; });
+      contact.for_each_vertex([&](int v, double weight) { place += weight * x[v]; });
     }
     points.push_back(
         {.a = grains.grain_of_vertex(contact.vertex),
@@ -98,7 +96,7 @@ std::vector<SurfaceMeasure> outlines_of(const SolidGrains& grains) {
   std::vector<SurfaceMeasure> measures;
   for (int g = 0; g < grains.size(); ++g) {
     const SolidTopology& shape = grains.topology(g);
-    SurfaceMeasure measure = measure_surface(shape.patches, &x[at(grains.outline_begin(g))]);
+    SurfaceMeasure measure = measure_surface(shape.patches, &x[grains.outline_begin(g)]);
     measure.volume *= shape.patch_fullness;
     measure.area *= std::pow(shape.patch_fullness, 2.0 / 3);
     measures.push_back(measure);
@@ -116,7 +114,7 @@ Scene soft_scene(const SoftViewOf<3>& view) {
     grain.push_back(g);
     radius.push_back(grains.radius(g));
     const int begin = grains.outline_begin(g), first = grains.topology(g).grid.outline_begin;
-    grain_of_vertex.insert(grain_of_vertex.end(), at(grains.outline_end(g) - begin), g);
+    grain_of_vertex.insert(grain_of_vertex.end(), grains.outline_end(g) - begin, g);
     for (const auto& quad : grains.topology(g).grid.quad)
       for (const int node : quad) quads.push_back(begin + node - first);
     grain_of_quad.insert(grain_of_quad.end(), grains.topology(g).grid.quad.size(), g);

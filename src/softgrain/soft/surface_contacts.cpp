@@ -15,8 +15,6 @@ namespace {
 /// Vertices, or middles of patches, that a thread takes at once.
 constexpr int points_at_once = 256;
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 /// The grains' patches, and what is looked up for all of them.
 struct Surfaces {
   explicit Surfaces(const SolidGrains& all, const OutlineStateOf<3>& now) : grains(all), state(now) {
@@ -32,9 +30,9 @@ struct Surfaces {
       }
     }
   }
-  const Vec<3>* first_of(int grain) const { return &state.position[at(grains.outline_begin(grain))]; }
+  const Vec<3>* first_of(int grain) const { return &state.position[grains.outline_begin(grain)]; }
   SurfacePatch patch(int grain, int index) const {
-    return {grains.topology(grain).patches[at(index)], first_of(grain)};
+    return {grains.topology(grain).patches[index], first_of(grain)};
   }
 
   const SolidGrains& grains;
@@ -65,9 +63,9 @@ std::vector<Facing> patches_facing(const Surfaces& surfaces, int grain, int vert
   const Vec<3> d = x - position[local];
   constexpr std::array<std::size_t, 4> around{5, 9, 10, 6};  // P_11, P_21, P_22, P_12
   std::vector<Facing> facing;
-  for (const int q : topology.quads_round[at(local)]) {
+  for (const int q : topology.quads_round[local]) {
     if (q < 0) continue;
-    const auto& net = topology.patches[at(q)].vertex;
+    const auto& net = topology.patches[q].vertex;
     std::size_t k = 0;
     while (net[around[k]] != local) ++k;
     const Vec<3> a = position[net[around[(k + 1) % 4]]] - position[local],
@@ -84,8 +82,8 @@ std::vector<Facing> patches_facing(const Surfaces& surfaces, int grain, int vert
 }
 
 /// Where the point `vertex` faces a grain, of which the vertex `nearest` is nearest to it.
-SurfaceContact facing_contact(const Surfaces& surfaces, int vertex, int grain, int nearest) {
-  const Vec<3>& x = surfaces.state.position[at(vertex)];
+SurfaceContact contact_with_patch(const Surfaces& surfaces, int vertex, int grain, int nearest) {
+  const Vec<3>& x = surfaces.state.position[vertex];
   SurfaceContact contact{.point = vertex, .vertex = vertex};
   double least = std::numeric_limits<double>::infinity();
   for (const Facing& facing : patches_facing(surfaces, grain, nearest, x)) {
@@ -97,7 +95,7 @@ SurfaceContact facing_contact(const Surfaces& surfaces, int vertex, int grain, i
     least = dot(d, d);
     contact.normal = place.normal();
     contact.gap = dot(d, contact.normal);
-    set_master(contact, surfaces.grains.topology(grain).patches[at(facing.patch)],
+    set_master(contact, surfaces.grains.topology(grain).patches[facing.patch],
                surfaces.grains.outline_begin(grain), found.u, found.v);
     if (found.inside) break;
   }
@@ -117,7 +115,7 @@ void find_nearest(const Surfaces& surfaces, const CellGrid<3>& grid, double reac
   grid.for_each_neighbour(v, [&](int w) {
     const int other = surfaces.grains.grain_of_vertex(w);
     if (other == grain) return;
-    const Vec<3> d = position[at(w)] - position[at(v)];
+    const Vec<3> d = position[w] - position[v];
     const double distance_squared = dot(d, d);
     if (distance_squared > reach * reach) return;
     const auto found =
@@ -135,7 +133,7 @@ void add_wall_contacts(const Surfaces& surfaces, SurfaceContact contact, double 
                        std::vector<SurfaceContact>& contacts) {
   for (int w = 0; w < static_cast<int>(surfaces.state.walls.size()); ++w) {
     contact.wall = w;
-    contact.normal = surfaces.state.walls[at(w)].normal;
+    contact.normal = surfaces.state.walls[w].normal;
     update_gap(contact, surfaces.state);
     if (contact.gap < margin) contacts.push_back(contact);
   }
@@ -147,7 +145,7 @@ void add_contacts_of_vertex(const Surfaces& surfaces, const CellGrid<3>& grid, d
   add_wall_contacts(surfaces, {.point = v, .vertex = v}, margin, contacts);
   find_nearest(surfaces, grid, surfaces.reach + margin, v, near);
   for (const NearestVertex& nearest : near) {
-    const SurfaceContact contact = facing_contact(surfaces, v, nearest.grain, nearest.vertex);
+    const SurfaceContact contact = contact_with_patch(surfaces, v, nearest.grain, nearest.vertex);
     if (contact.gap < margin) contacts.push_back(contact);
   }
 }
@@ -157,7 +155,7 @@ void add_contacts_of_patch(const Surfaces& surfaces, double margin, int patch,
                            std::vector<SurfaceContact>& contacts) {
   const auto next = std::upper_bound(surfaces.patch_begin.begin(), surfaces.patch_begin.end(), patch);
   const int grain = static_cast<int>(next - surfaces.patch_begin.begin()) - 1;
-  const PatchNet& net = surfaces.grains.topology(grain).patches[at(patch - surfaces.patch_begin[at(grain)])];
+  const PatchNet& net = surfaces.grains.topology(grain).patches[patch - surfaces.patch_begin[grain]];
   const int begin = surfaces.grains.outline_begin(grain);
   SurfaceContact contact{.point = surfaces.grains.outline_size() + patch, .vertex = begin + net.vertex[5]};
   set_master(contact, net, begin, 0.5, 0.5);
@@ -167,9 +165,9 @@ void add_contacts_of_patch(const Surfaces& surfaces, double margin, int patch,
 /// add(i, list) for i = 0 .. count - 1 on all threads; the lists one after the other.
 template <class Add>
 void append_in_parallel(int count, std::vector<SurfaceContact>& contacts, const Add& add) {
-  std::vector<std::vector<SurfaceContact>> parts(at((count + points_at_once - 1) / points_at_once));
+  std::vector<std::vector<SurfaceContact>> parts((count + points_at_once - 1) / points_at_once);
   parallel_for(static_cast<int>(parts.size()), [&](int k) {
-    for (int i = k * points_at_once; i < std::min(count, (k + 1) * points_at_once); ++i) add(i, parts[at(k)]);
+    for (int i = k * points_at_once; i < std::min(count, (k + 1) * points_at_once); ++i) add(i, parts[k]);
   });
   for (const auto& part : parts) contacts.insert(contacts.end(), part.begin(), part.end());
 }
@@ -195,8 +193,8 @@ std::vector<SurfaceContact> SurfaceNeighbours::detect(const SolidGrains& grains,
 
 double gap_now(const SurfaceContact& contact, const OutlineStateOf<3>& state) {
   Vec<3> apart;
-  if (contact.wall >= 0) apart -= state.walls[at(contact.wall)].point;
-  contact.for_each_vertex([&](int v, double weight) { apart += weight * state.position[at(v)]; });
+  if (contact.wall >= 0) apart -= state.walls[contact.wall].point;
+  contact.for_each_vertex([&](int v, double weight) { apart += weight * state.position[v]; });
   return dot(apart, contact.normal);
 }
 
@@ -206,9 +204,9 @@ void update_gap(SurfaceContact& contact, const OutlineStateOf<3>& state) {
 
 Vec<3> relative_displacement(const SurfaceContact& contact, const OutlineStateOf<3>& state) {
   Vec<3> displacement;
-  if (contact.wall >= 0) displacement -= state.dt * state.walls[at(contact.wall)].velocity;
+  if (contact.wall >= 0) displacement -= state.dt * state.walls[contact.wall].velocity;
   contact.for_each_vertex(
-      [&](int v, double weight) { displacement += weight * (state.position[at(v)] - state.start[at(v)]); });
+      [&](int v, double weight) { displacement += weight * (state.position[v] - state.start[v]); });
   return displacement;
 }
 
