@@ -20,6 +20,8 @@ inline std::array<Vec<3>, 2> tangents(const Vec<3>& n) {
 template <int Dim>
 Vec<Dim> from_local(const Vec<Dim>& n, const Vec<Dim>& p) {
   Vec<Dim> world = p[0] * n;
+  if constexpr (Dim == 3)
+    if (p[1] == 0 && p[2] == 0) return world;
   const auto t = tangents(n);
   for (int k = 1; k < Dim; ++k) world += p[k] * t[static_cast<std::size_t>(k - 1)];
   return world;
