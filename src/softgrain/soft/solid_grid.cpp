@@ -64,7 +64,7 @@ std::vector<std::array<Place, 4>> outer_faces(int n) {
   return faces;
 }
 
-SolidPoint point_of_cell(const SolidGrid& grid, const std::array<int, 8>& cell, const Vec<3>& at) {
+SolidPoint point_of_brick(const SolidGrid& grid, const std::array<int, 8>& cell, const Vec<3>& at) {
   SolidPoint point;
   std::array<Vec<3>, 8> local;  // dN/d(xi, eta, zeta)
   Mat<3> J;                     // dX/d(xi, eta, zeta)
@@ -139,7 +139,7 @@ std::vector<SolidPoint> material_points(const SolidGrid& grid) {
   for (const auto& cell : grid.cell)
     for (const double zeta : {-gauss, gauss})
       for (const double eta : {-gauss, gauss})
-        for (const double xi : {-gauss, gauss}) points.push_back(point_of_cell(grid, cell, {xi, eta, zeta}));
+        for (const double xi : {-gauss, gauss}) points.push_back(point_of_brick(grid, cell, {xi, eta, zeta}));
   return points;
 }
 

@@ -56,7 +56,7 @@ std::vector<double> skin_pressures(const SolidGrains& grains, int grain) {
 
 constexpr std::size_t masters = 16, bodies_of_contact = 3 + masters;
 
-void check_bodies(std::span<const std::int64_t> bodies, int points, int vertices, int walls) {
+void check_bodies_in_space(std::span<const std::int64_t> bodies, int points, int vertices, int walls) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const std::size_t k = i % bodies_of_contact;
     const int most = k == 0 ? points : k == 2 ? walls : vertices;
@@ -158,7 +158,7 @@ void visit_contacts(const SolidGrains& grains, int walls, bool, std::vector<Surf
   if (!visit.reads()) return;
   int patches = 0;
   for (int g = 0; g < grains.size(); ++g) patches += static_cast<int>(grains.topology(g).patches.size());
-  check_bodies(bodies, grains.outline_size() + patches, grains.outline_size(), walls);
+  check_bodies_in_space(bodies, grains.outline_size() + patches, grains.outline_size(), walls);
   if (places.size() != impulse.size() || bodies.size() != bodies_of_contact * places.size())
     throw IoError("the snapshot's arrays of contacts have different lengths");
   contacts.clear();

@@ -49,20 +49,20 @@ void set_master(SurfaceContact& contact, const PatchNet& net, int first_vertex, 
 }
 
 /// A patch round a vertex, and how far x lies within it: the smaller of its two coordinates from the vertex.
-struct Facing {
+struct FacingPatch {
   int patch = 0;
   double u = 0, v = 0;  // of the vertex
   double within = 0;
 };
 
 /// The patches round a vertex, the one that x faces first.
-std::vector<Facing> patches_facing(const Surfaces& surfaces, int grain, int vertex, const Vec<3>& x) {
+std::vector<FacingPatch> patches_facing(const Surfaces& surfaces, int grain, int vertex, const Vec<3>& x) {
   const SolidTopology& topology = surfaces.grains.topology(grain);
   const int begin = surfaces.grains.outline_begin(grain), local = vertex - begin;
   const Vec<3>* position = surfaces.first_of(grain);
   const Vec<3> d = x - position[local];
   constexpr std::array<std::size_t, 4> around{5, 9, 10, 6};  // P_11, P_21, P_22, P_12
-  std::vector<Facing> facing;
+  std::vector<FacingPatch> facing;
   for (const int q : topology.quads_round[local]) {
     if (q < 0) continue;
     const auto& net = topology.patches[q].vertex;
@@ -77,7 +77,7 @@ std::vector<Facing> patches_facing(const Surfaces& surfaces, int grain, int vert
                       .within = std::min(bb * da - ab * db, aa * db - ab * da) / (aa * bb - ab * ab)});
   }
   std::stable_sort(facing.begin(), facing.end(),
-                   [](const Facing& p, const Facing& q) { return p.within > q.within; });
+                   [](const FacingPatch& p, const FacingPatch& q) { return p.within > q.within; });
   return facing;
 }
 
@@ -86,7 +86,7 @@ SurfaceContact contact_with_patch(const Surfaces& surfaces, int vertex, int grai
   const Vec<3>& x = surfaces.state.position[vertex];
   SurfaceContact contact{.point = vertex, .vertex = vertex};
   double least = std::numeric_limits<double>::infinity();
-  for (const Facing& facing : patches_facing(surfaces, grain, nearest, x)) {
+  for (const FacingPatch& facing : patches_facing(surfaces, grain, nearest, x)) {
     const SurfacePatch patch = surfaces.patch(grain, facing.patch);
     const auto found = patch.nearest(x, std::abs(facing.u - 0.3), std::abs(facing.v - 0.3));
     const auto place = patch.at(found.u, found.v);
