@@ -100,7 +100,7 @@ void carry_out(const RunRequest& request, const RunDirectory& directory, const R
                const std::vector<std::string>& notes, const Checkpoint* from = nullptr) {
   SignalWatch signals;
   if (options.threads > 0) set_threads(options.threads);
-  const auto simulation = create_simulation(request.the_case);
+  const auto simulation = create_any_simulation(request.the_case);
   if (from != nullptr) simulation->begin_from(*from);
   RunOutcome outcome;
   {

@@ -11,7 +11,7 @@ using namespace softgrain::bench;
 namespace {
 
 struct NoRecorder final : Recorder {
-  bool after_step(Simulation&, const StepReport&, RunReport&) override { return true; }
+  bool after_step(AnySimulation&, const StepReport&, RunReport&) override { return true; }
 };
 
 }  // namespace

@@ -64,7 +64,7 @@ class Watch final : public Recorder {
  public:
   explicit Watch(const Condition& go_on) : go_on_(go_on) {}
 
-  bool after_step(Simulation&, const StepReport& step, RunReport&) override {
+  bool after_step(AnySimulation&, const StepReport& step, RunReport&) override {
     last = step;
     if (std::chrono::steady_clock::now() - looked_ > time_between_looks) look_for_signals();
     return go_on_();

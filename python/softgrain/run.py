@@ -32,6 +32,8 @@ class Snapshot:
     #                                               of elastic grains total_force, normal, position (m, 2) instead of the last
     walls: np.ndarray = field(default_factory=lambda: np.empty((0, 4)))  # x0 y0 x1 y1 [m], or edges of a periodic cell
     outlines: dict = field(default_factory=dict)  # position (v, 2) [m], grain (v,): counter-clockwise polygons
+    surface: dict = field(default_factory=dict)  # in space: quad (q, 4) of the outlines' vertices, grain (q,), pressure (q,) [Pa];
+    #                                              walls (w, 12): four corners each [m]
     cell: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # lattice vectors of a periodic cell, one a row [m]
 
     @property
@@ -89,6 +91,7 @@ class Snapshot:
                 contacts=contacts,
                 walls=np.asarray(walls, float).reshape(-1, 4),
                 outlines=_arrays(scene, "outlines"),
+                surface=_arrays(scene, "surface"),
                 cell=scene["cell"][()] if "cell" in scene else np.empty((0, 2)),
             )
 
@@ -117,6 +120,11 @@ class Run:
     def elastic(self) -> bool:
         """Whether the grains are elastic (mpm), not bonded (bpm)."""
         return self.case.get("experiment", {}).get("model") == "mpm"
+
+    @property
+    def in_space(self) -> bool:
+        """Whether the run has three dimensions."""
+        return self.case.get("experiment", {}).get("dimension", 2) == 3
 
     @cached_property
     def info(self) -> dict:
@@ -187,8 +195,8 @@ class Plots:
         return self._draw("draw_curve", [self.run], normalise=normalise)
 
     def grain(self):
-        """The particles at the moments that matter."""
-        return self._draw("draw_grain", self.run)
+        """The particles, or the surfaces in space, at the moments that matter."""
+        return self._draw("draw_space" if self.run.in_space else "draw_grain", self.run)
 
     def packing(self):
         """Coordination number and packing fraction."""
@@ -270,7 +278,7 @@ def _arrays(scene, name):
 
 def _tangential_force(force, impulse):
     """Of bonded grains, whose scene has the normal forces of the contacts that push, from all impulses (p_n, p_t)."""
-    pushing = impulse[impulse[:, 0] > 0] if impulse.ndim == 2 else np.empty((0, 2))
+    pushing = impulse[impulse[:, 0] > 0] if impulse.ndim == 2 and impulse.shape[1] == 2 else np.empty((0, 2))
     if len(pushing) != len(force):
         return {}
     return {"tangential_force": force * pushing[:, 1] / pushing[:, 0]}

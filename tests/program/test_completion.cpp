@@ -64,7 +64,7 @@ TEST_CASE("the columns that are offered are columns of a packing or of a grain")
   const softgrain::test::TemporaryDirectory folder;
   std::string header;
   for (const std::string loading : {"compaction", "diametral"})
-    for (const std::string model : {"mpm", "bpm", "metal", "cell"}) {
+    for (const std::string model : {"mpm", "bpm", "metal", "cell", "space"}) {
       const std::string ends = model == "cell" ? "periodic" : "walls";
       const std::string out = (folder.path() / (loading + model)).string();
       softgrain::test::run({SOFTGRAIN_PROGRAM,
@@ -92,9 +92,11 @@ TEST_CASE("the columns that are offered are columns of a packing or of a grain")
                             "--set",
                             "mpm.cells=2",
                             "--set",
+                            model == "space" ? "experiment.dimension=3" : "experiment.dimension=2",
+                            "--set",
                             "bpm.primaries=20",
                             "--set",
-                            "sample.packing_fraction=0.4",
+                            model == "space" ? "sample.packing_fraction=0.2" : "sample.packing_fraction=0.4",
                             "--stop-after",
                             "1 ms"});
       const std::string series = softgrain::test::read_text(out + "/series.csv");

@@ -40,6 +40,12 @@ inline Words tiny_path(const std::string& name) {
          "sample.packing_fraction=0.62", "kind.rigid.share=0.5"});
   if (name == "jamming")
     add({"sample.grains=9", "loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.15"});
+  if (name == "compaction_3d")
+    add({"sample.grains=4", "mpm.cells=2", "sample.packing_fraction=0.35", "loading.wall_velocity=\"5 m/s\"",
+         "loading.max_strain=0.32", "loading.unload_at=[0.28]", "loading.unload_by=0.05"});
+  if (name == "sphere_walls")
+    add({"mpm.cells=2", "contact.wall_friction=0.2", "loading.wall_velocity=\"5 m/s\"",
+         "loading.max_strain=0.1", "loading.unload_at=[0.06]", "loading.unload_by=0.03"});
   if (name == "shear")
     add({"sample.grains=9", "loading.wall_velocity=\"0.5 m/s\"", "loading.hold=\"20 ms\"",
          "loading.shear_rate=10", "loading.max_shear=0.55", "loading.confining_stress=\"1 MPa\"",
@@ -86,7 +92,8 @@ inline std::vector<TinyCase> tiny_cases() {
       cases.push_back({name, source, tiny_path(name), 0});
     else if (name == "die" || name == "tablet")
       cases.push_back({name, source, tiny_path(name), 5});
-    else if (name == "rubber_sand" || name == "soft_rigid")
+    else if (name == "rubber_sand" || name == "soft_rigid" || name == "compaction_3d" ||
+             name == "sphere_walls")
       cases.push_back({name, source, tiny_path(name)});
     else if (name == "biaxial" || name == "relaxation" || name == "shear")
       cases.push_back({name, source, tiny_path(name), name == "relaxation" ? 1U : 2U});

@@ -6,7 +6,7 @@ from pathlib import Path
 import softgrain
 
 from .. import colours
-from ..verb import carry_out
+from ..verb import carry_out, refuse_space
 from . import scale_of, write_contacts, write_csv, write_lammps, write_svg, write_xyz
 from .paraview import write_scene
 
@@ -17,6 +17,7 @@ ONE_FRAME = {"csv": (write_csv, "csv"), "contacts": (write_contacts, "contacts.c
 def export(options):
     """Writes the file under its name when it is whole; returns its path."""
     run = softgrain.open(options.run)
+    refuse_space(run, "softgrain export")
     if len(run) == 0:
         raise ValueError(f"{run.path} has no snapshots")
     if options.to == "paraview":

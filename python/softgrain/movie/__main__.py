@@ -7,7 +7,7 @@ from pathlib import Path
 import softgrain
 
 from ..plot.style import provenance, style
-from ..verb import carry_out
+from ..verb import carry_out, refuse_space
 from . import Film, encode
 
 DURATION = 10  # of a film that says nothing else [s]
@@ -22,6 +22,7 @@ def make(options):
     if suffix not in WIDTHS:
         raise ValueError(f"--output {path}: the name must end in .mp4 or .gif; one without an ending is a folder of PNG files")
     run = softgrain.open(options.run)
+    refuse_space(run, "softgrain movie")
     with style():
         film = Film(run, options.width or WIDTHS[suffix])
         rate = options.fps or min(FASTEST, max(SLOWEST, len(film) / DURATION))

@@ -6,6 +6,7 @@ from .diagnostics import draw_diagnostics
 from .grain import draw_grain
 from .packing import draw_packing
 from .shear import draw_shear
+from .space import draw_space
 from .style import save, style
 
-__all__ = ["draw_curve", "draw_diagnostics", "draw_die", "draw_grain", "draw_heckel", "draw_kawakita", "draw_packing", "draw_profile", "draw_shear", "save", "style"]
+__all__ = ["draw_curve", "draw_diagnostics", "draw_die", "draw_grain", "draw_heckel", "draw_kawakita", "draw_packing", "draw_profile", "draw_shear", "draw_space", "save", "style"]

@@ -22,7 +22,8 @@ def draw(options):
         figures["shear"] = (runs, lambda: plot.draw_shear(runs, names))
     for run, name in zip(runs, names):
         suffix = "" if len(runs) == 1 else "-" + name.replace("/", "-")
-        figures["grain" + suffix] = ([run], lambda run=run: plot.draw_grain(run))
+        draw_grain = plot.draw_space if run.in_space else plot.draw_grain
+        figures["grain" + suffix] = ([run], lambda run=run, draw_grain=draw_grain: draw_grain(run))
         figures["diagnostics" + suffix] = ([run], lambda run=run: plot.draw_diagnostics(run))
         if options.kind in KINDS_OF_DIE or run.case.get("experiment", {}).get("loading") == "die":
             figures["die" + suffix] = ([run], lambda run=run: plot.draw_die(run))

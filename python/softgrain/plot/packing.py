@@ -31,8 +31,8 @@ def draw_packing(runs, labels=None):
         right.plot(strain, phi, color=colour, label=PHI.removeprefix("packing fraction ") if alone else label)
         if "phi_0" in series:
             phi_0 = measure.envelope(series["strain"], series["phi_0"])[1]
-            right.plot(strain, phi_0, color=GREY if alone else colour, lw=0.7, ls=":", label=PHI_0 if alone else None)
-    _mark_isostaticity(left)
+            right.plot(strain, phi_0, color=GREY if alone else colour, lw=0.7, ls=":", label=(PHI_0.replace("areas", "volumes") if run.in_space else PHI_0) if alone else None)
+    _mark_isostaticity(left, 6 if all(run.in_space for run, _ in known) else 4)
     left.set(xlabel=PHI, ylabel="coordination number $Z$", ylim=(0, None))
     right.set(xlabel=r"strain $\varepsilon$", ylabel=PHI, xlim=(0, None))
     left.legend(loc="lower right")
@@ -40,7 +40,7 @@ def draw_packing(runs, labels=None):
     return figure
 
 
-def _mark_isostaticity(axes):
-    """The line Z = 4 of frictionless disks, walls counted."""
-    if max((line.get_ydata().max(initial=0) for line in axes.lines), default=0) > 3:
-        axes.axhline(4, color=INK, lw=0.5, zorder=1)
+def _mark_isostaticity(axes, isostatic):
+    """The line Z = 4 of frictionless disks, 6 of spheres, walls counted."""
+    if max((line.get_ydata().max(initial=0) for line in axes.lines), default=0) > isostatic - 1:
+        axes.axhline(isostatic, color=INK, lw=0.5, zorder=1)

@@ -43,6 +43,7 @@ struct Case {
   struct Experiment {
     LoadingPath loading = LoadingPath::diametral;
     GrainModel model = GrainModel::bpm;
+    int dimension = 2;  ///< of space; in 2 everything is per metre of depth
   } experiment;
 
   struct Grain {
@@ -174,6 +175,7 @@ struct Case {
 
 /// Grains in a box; else one grain between two walls.
 inline bool is_in_a_box(const Case& c) { return c.experiment.loading != LoadingPath::diametral; }
+inline bool is_in_space(const Case& c) { return c.experiment.dimension == 3; }
 /// A box that repeats along x, y.
 inline std::array<bool, 2> repeats_of(const Case& c) {
   if (!is_in_a_box(c)) return {};

@@ -37,11 +37,15 @@ void check_case(const Case& c) {
   check_time_step(c);
   const bool bpm = is_bonded(c);
   if (estimate(c).particles <= (bpm ? few_primaries : few_points)) {
-    create_simulation(c);
+    create_any_simulation(c);
     return;
   }
-  create_simulation(twin_of(c));
-  if (is_in_a_box(c) && c.sample.grains <= few_grains) sample_box(c);
+  create_any_simulation(twin_of(c));
+  if (!is_in_a_box(c) || c.sample.grains > few_grains) return;
+  if (is_in_space(c))
+    sample_solid_box(c);
+  else
+    sample_box(c);
 }
 
 }  // namespace softgrain

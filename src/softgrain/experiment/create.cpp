@@ -1,16 +1,33 @@
 #include "softgrain/experiment/create.hpp"
 
+#include "softgrain/core/error.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
 
 namespace softgrain {
+namespace {
+
+template <int Dim>
+std::unique_ptr<SimulationOf<Dim>> with_loading(const Case& c, PlacedModelOf<Dim> placed) {
+  LoadingOf<Dim> loading(stages_of(c), frame_of(c), placed.box);
+  return std::make_unique<SimulationOf<Dim>>(std::move(placed.model), std::move(placed.box),
+                                             std::move(loading), placed.time_step);
+}
+
+}  // namespace
+
+std::unique_ptr<AnySimulation> create_any_simulation(const Case& c) {
+  if (!is_in_space(c)) return create_simulation(c);
+  check_loading(c);
+  return with_loading(c, solid_grains_of(c));
+}
 
 std::unique_ptr<Simulation> create_simulation(const Case& c) {
+  require(!is_in_space(c),
+          "not yet: a simulation in memory with experiment.dimension = 3; `softgrain run` carries such a "
+          "case out");
   check_loading(c);
-  PlacedModel placed = is_bonded(c) ? bonded_grains_of(c) : elastic_grains_of(c);
-  Loading loading(stages_of(c), frame_of(c), placed.box);
-  return std::make_unique<Simulation>(std::move(placed.model), std::move(placed.box), std::move(loading),
-                                      placed.time_step);
+  return with_loading(c, is_bonded(c) ? bonded_grains_of(c) : elastic_grains_of(c));
 }
 
 }  // namespace softgrain

@@ -7,6 +7,7 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/kinds.hpp"
+#include "softgrain/experiment/solid_case.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/lattice/lattice_grains.hpp"
 #include "softgrain/soft/elastic_grains.hpp"
@@ -161,6 +162,7 @@ PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box, double
 double longest_time_step(const Case& c) {
   constexpr double no_limit = std::numeric_limits<double>::infinity();
   if (is_bonded(c)) return no_limit;
+  if (is_in_space(c)) return longest_solid_step(c);
   if (is_lattice(c)) return stable_time_step(law_of(c), c.grain.density, cell_of(c), 0.2 * (1 + 1e-9));
   if (c.mpm.integrator != Integrator::symplectic_euler) return no_limit;
   const auto longest = [](const Case& of_kind) {

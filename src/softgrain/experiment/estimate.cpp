@@ -30,8 +30,12 @@ double wave_modulus(const Case& c) {
   return c.mpm.material.young_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
 }
 
-/// Of all grains, undeformed, in the mean [m^2].
+/// Of all grains, undeformed, in the mean [m^2]; in space their volume [m^3].
 double grain_area(const Case& c) {
+  if (is_in_space(c)) {
+    if (!is_in_a_box(c)) return 4 * std::numbers::pi / 3 * std::pow(c.grain.radius, 3);
+    return c.sample.grains * std::numbers::pi / 6 * mean_cube_diameter(diameter_law(c.sample, 3));
+  }
   if (!is_in_a_box(c)) return std::numbers::pi * c.grain.radius * c.grain.radius;
   if (!c.sample.placed.empty()) return c.sample.packing_fraction * c.box.width * c.box.height;
   if (!c.kinds.empty()) return sum_of_kinds(c, grain_area);
@@ -60,7 +64,7 @@ double loading_time(const Case& c) {
   LoadingFrame frame = frame_of(c);
   const double height = box_height(c);
   if (is_in_a_box(c)) {
-    frame.start = {height, c.sample.aspect * height};
+    frame.start = {height, c.sample.aspect * height, is_in_space(c) ? c.sample.aspect * height : 0};
     frame.measure.length = height;
   }
   double time = 0;
@@ -78,6 +82,10 @@ double primaries(const Case& c) {
 }  // namespace
 
 double box_height(const Case& c) {
+  if (is_in_space(c)) {
+    if (!is_in_a_box(c)) return 2 * c.grain.radius;
+    return std::cbrt(grain_area(c) / c.sample.packing_fraction / (c.sample.aspect * c.sample.aspect));
+  }
   return std::sqrt(grain_area(c) / c.sample.packing_fraction / c.sample.aspect);
 }
 
@@ -91,6 +99,8 @@ double first_packing_fraction(const Case& c) {
 double first_time_step(const Case& c) {
   if (is_bonded(c)) return c.time.step > 0 ? c.time.step : stable_bond_step(c);
   if (c.time.step > 0) return c.time.step;
+  if (is_in_space(c))
+    return 0.36 * smallest_radius(c) / c.mpm.cells / std::sqrt(wave_modulus(c) / c.grain.density);
   if (is_implicit(c) || is_rigid(c)) return 0.01 * smallest_radius(c) / c.loading.wall_velocity;
   if (!c.kinds.empty()) return least_of_kinds(c, first_time_step);
   // a share of the time in which a pressure wave crosses a cell; pi R^2 = 3.5 cells^2 h^2
@@ -114,6 +124,7 @@ bool remembers(const Case& c) {
 
 /// Of material, of elastic grains; a rigid one counts the vertices of its outline.
 double points(const Case& c) {
+  if (is_in_space(c)) return grains(c) * 32 * std::pow(c.mpm.cells, 3);
   return sum_of_kinds(c, [](const Case& kind) {
     const int cells = kind.mpm.cells;
     return grains(kind) * (is_rigid(kind) ? 4 * cells : 14 * cells * cells);
@@ -143,6 +154,7 @@ double seconds_of_step(const Case& c, const Estimate& e) {
       std::clamp(usual_sweeps, c.solver.min_sweeps, std::max(c.solver.min_sweeps, c.solver.max_sweeps));
   if (is_bonded(c)) return e.contacts * sweeps * (c.solver.precision == Precision::single ? 4.1e-9 : 5.5e-9);
   if (is_updated_lagrangian(c)) return e.particles * 1.1e-7;
+  if (is_in_space(c)) return std::ceil(grains(c) / 8) * 8 / grains(c) * e.particles * 1.6e-8;
   const double batches = std::ceil(grains(c) / 8);  // a batch of 8 grains costs the same when it is not full
   const double flow = !remembers(c) ? 1 : is_implicit(c) ? flow_factor_implicit : flow_factor_explicit;
   return batches * 8 * e.particles / grains(c) * flow *
@@ -167,6 +179,7 @@ double disk(const Case& c, const Estimate& e) {
   const bool bpm = is_bonded(c);
   const double frames =
       std::min<double>(c.output.snapshots, e.steps) + static_cast<double>(stages_written(c));
+  if (is_in_space(c)) return frames * (20e3 + 25 * e.particles);
   const double bytes_of_particle = (bpm ? 280 : 150) + (c.output.vtk ? 75 : 0);
   return frames * (20e3 + bytes_of_particle * e.particles + (bpm ? 900 * grains(c) : 0));
 }
@@ -176,6 +189,7 @@ double disk(const Case& c, const Estimate& e) {
 double memory(const Case& c, const Estimate& e) {
   constexpr double program = 35e6;
   if (is_bonded(c)) return program + 2300 * e.particles + 7000 * grains(c);
+  if (is_in_space(c)) return program + 100 * e.particles + 1e6 * c.mpm.cells;
   const double in_batches = std::ceil(grains(c) / 8) * 8 * e.particles / grains(c);
   return program + 550 * e.particles + 350 * in_batches;
 }

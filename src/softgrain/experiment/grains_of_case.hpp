@@ -9,15 +9,19 @@
 namespace softgrain {
 
 /// Grains of a case in their box, with the time step of the run.
-struct PlacedModel {
-  std::unique_ptr<Model> model;
-  Box<2> box;
+template <int Dim>
+struct PlacedModelOf {
+  std::unique_ptr<ModelOf<Dim>> model;
+  Box<Dim> box;
   double time_step = 0;  ///< [s]
 };
+
+using PlacedModel = PlacedModelOf<2>;
 
 /// One grain between two walls, or the grains of a box. Raises UsageError.
 PlacedModel bonded_grains_of(const Case& the_case);
 PlacedModel elastic_grains_of(const Case& the_case);
+PlacedModelOf<3> solid_grains_of(const Case& the_case);
 
 /// The longest time step [s] with which an explicit run of the case is stable from its start on, with grains
 /// of the smallest radius that it allows; infinite where the integrator or the model has no such limit. While

@@ -9,7 +9,7 @@ namespace softgrain {
 namespace {
 
 /// One step; where it breaks down the error tells its number.
-StepReport advance(Simulation& simulation) {
+StepReport advance(AnySimulation& simulation) {
   const auto number = simulation.steps_done() + 1;
   try {
     return simulation.step();
@@ -39,7 +39,7 @@ void RunReport::add(const StepReport& step) {
   overlap_max = worse(overlap_max, step.overlap_max);
 }
 
-RunReport run(Simulation& simulation, Recorder& recorder, RunReport report) {
+RunReport run(AnySimulation& simulation, Recorder& recorder, RunReport report) {
   bool go_on = true;
   while (go_on && !simulation.finished()) {
     const StepReport step = advance(simulation);

@@ -33,11 +33,11 @@ struct RunReport {
 class Recorder {
  public:
   virtual ~Recorder() = default;
-  virtual bool after_step(Simulation& simulation, const StepReport& step, RunReport& run) = 0;
+  virtual bool after_step(AnySimulation& simulation, const StepReport& step, RunReport& run) = 0;
 };
 
 /// The loop: diametral compression, compaction and shear are the same loop along another path. A
 /// NumericalError gets the number of its step.
-RunReport run(Simulation& simulation, Recorder& recorder, RunReport report = {});
+RunReport run(AnySimulation& simulation, Recorder& recorder, RunReport report = {});
 
 }  // namespace softgrain

@@ -5,21 +5,30 @@
 #include <numbers>
 
 namespace softgrain {
+namespace {
+
+BoxSampleOptions options_of(const Case& c) {
+  std::vector<GrainsOfKind> kinds;
+  for (const Case::Kind& kind : c.kinds) kinds.push_back({kind.grains, diameter_law(kind.sizes)});
+  return {.grains = c.sample.grains,
+          .sizes = kinds.empty() ? diameter_law(c.sample, c.experiment.dimension) : DiameterLaw{},
+          .kinds = std::move(kinds),
+          .packing_fraction = c.sample.packing_fraction,
+          .aspect = c.sample.aspect,
+          .repeats = repeats_of(c),
+          .seed = static_cast<std::uint64_t>(c.sample.seed)};
+}
+
+}  // namespace
 
 BoxSample sample_box(const Case& c) {
   if (!c.sample.placed.empty()) return {c.box.width, c.box.height, repeats_of(c), c.sample.placed};
-  std::vector<GrainsOfKind> kinds;
-  for (const Case::Kind& kind : c.kinds) kinds.push_back({kind.grains, diameter_law(kind.sizes)});
-  return sample_box({.grains = c.sample.grains,
-                     .sizes = kinds.empty() ? diameter_law(c.sample) : DiameterLaw{},
-                     .kinds = std::move(kinds),
-                     .packing_fraction = c.sample.packing_fraction,
-                     .aspect = c.sample.aspect,
-                     .repeats = repeats_of(c),
-                     .seed = static_cast<std::uint64_t>(c.sample.seed)});
+  return sample_box(options_of(c));
 }
 
-DiameterLaw diameter_law(const Case::Sizes& sample) {
+BoxSampleOf<3> sample_solid_box(const Case& c) { return sample_solid_box(options_of(c)); }
+
+DiameterLaw diameter_law(const Case::Sizes& sample, int dimension) {
   DiameterLaw law{.law = sample.sizes,
                   .smallest = sample.smallest_diameter,
                   .largest = sample.largest_diameter,
@@ -31,7 +40,8 @@ DiameterLaw diameter_law(const Case::Sizes& sample) {
   if (!sample.shares.empty()) {
     law.numbers.clear();
     for (std::size_t k = 0; k < std::min(sample.shares.size(), sample.diameters.size()); ++k)
-      law.numbers.push_back(sample.shares[k] / (sample.diameters[k] * sample.diameters[k]));
+      law.numbers.push_back(sample.shares[k] / (sample.diameters[k] * sample.diameters[k]) /
+                            (dimension == 3 ? sample.diameters[k] : 1));
   } else if (sample.numbers.empty()) {
     law.numbers.assign(sample.diameters.size(), 1.0);
   }

@@ -7,9 +7,10 @@ namespace softgrain {
 
 /// The sample of a case, the same for every model: its placed grains, or random ones.
 BoxSample sample_box(const Case& the_case);
+BoxSampleOf<3> sample_solid_box(const Case& the_case);
 
-/// The law of the diameters of a case; shares of area become numbers.
-DiameterLaw diameter_law(const Case::Sizes& sizes);
+/// The law of the diameters of a case; shares of area, in space of volume, become numbers.
+DiameterLaw diameter_law(const Case::Sizes& sizes, int dimension = 2);
 
 /// What a case says of its sample in more than one place, made one: the smallest and largest diameters follow
 /// a list, or with the number of grains all kinds; for placed grains also their number, the box (where the

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
+#include <type_traits>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/model/scene_in_cell.hpp"
@@ -10,8 +12,35 @@
 #include "softgrain/state/archive.hpp"
 
 namespace softgrain {
+namespace {
 
-Simulation::Simulation(std::unique_ptr<Model> model, Box<2> box, Loading loading, double dt)
+/// The faces of a box in space, a row of four corners for each, in the order of BoxWall; of walls without
+/// sides as far as they are drawn.
+void add_faces(const Box<3>& box, const std::pair<double, double>& reach, Scene& scene) {
+  Vec<3> low, high;
+  for (int k = 0; k < 3; ++k) {
+    low[k] = box.bounded(k) ? box.low(k).point[k] : reach.first;
+    high[k] = box.bounded(k) ? box.high(k).point[k] : reach.second;
+  }
+  std::vector<double> corners;
+  for (std::size_t w = 0; w < box.walls.size(); ++w) {
+    const int axis = 2 - static_cast<int>(w / 2), a = (axis + 1) % 3, b = (axis + 2) % 3;
+    for (int corner = 0; corner < 4; ++corner) {
+      Vec<3> x;
+      x[axis] = w % 2 == 0 ? low[axis] : high[axis];
+      x[a] = corner == 1 || corner == 2 ? high[a] : low[a];
+      x[b] = corner >= 2 ? high[b] : low[b];
+      corners.insert(corners.end(), x.c.begin(), x.c.end());
+    }
+  }
+  scene.surface["walls"] = {12, std::move(corners)};
+}
+
+}  // namespace
+
+template <int Dim>
+SimulationOf<Dim>::SimulationOf(std::unique_ptr<ModelOf<Dim>> model, Box<Dim> box, LoadingOf<Dim> loading,
+                                double dt)
     : model_(std::move(model)),
       box_(std::move(box)),
       loading_(std::move(loading)),
@@ -22,7 +51,8 @@ Simulation::Simulation(std::unique_ptr<Model> model, Box<2> box, Loading loading
   apply_settings();
 }
 
-Simulation::Simulation(const Simulation& other)
+template <int Dim>
+SimulationOf<Dim>::SimulationOf(const SimulationOf& other)
     : model_(other.model_->copy()),
       box_(other.box_),
       loading_(other.loading_),
@@ -32,16 +62,18 @@ Simulation::Simulation(const Simulation& other)
       steps_planned_(other.steps_planned_),
       row_(other.row_) {}
 
-void Simulation::follow(WallMotion motion) {
+template <int Dim>
+void SimulationOf<Dim>::follow(WallMotion motion) {
   loading_.follow(std::move(motion));
   steps_planned_ = loading_.steps_planned(dt_);
 }
 
-StepReport Simulation::step() {
+template <int Dim>
+StepReport SimulationOf<Dim>::step() {
   const bool over = finished();  // whoever goes on then has been told why
-  const Mat<2> before = box_.cell.gradient();
+  const Mat<Dim> before = box_.cell.gradient();
   loading_.drive(box_, *model_, time(), dt_);
-  const Mat<2> L = box_.cell.gradient();
+  const Mat<Dim> L = box_.cell.gradient();
   if (!(L == before)) model_->follow(L - before);
   const StepReport report = model_->step(box_, dt_);
   ++step_;
@@ -53,13 +85,14 @@ StepReport Simulation::step() {
   for (std::size_t w = 0; w < box_.faces(); ++w) row_.impulse[w] += box_.outward_impulse(w);
   row_.duration += dt_;
   loading_.after_step(box_, time(), dt_, felt_in(report));
-  if (!over && model_->is_exhausted(report, box_)) loading_.end(Loading::End::exhausted);
+  if (!over && model_->is_exhausted(report, box_)) loading_.end(LoadingOf<Dim>::End::exhausted);
   if (loading_.at_turning_point()) apply_settings();
   return report;
 }
 
 /// Energies take a look at every body: only where a stage asks for them.
-StepFelt Simulation::felt_in(const StepReport& report) const {
+template <int Dim>
+StepFelt SimulationOf<Dim>::felt_in(const StepReport& report) const {
   StepFelt felt{.overlap_mean = report.overlap_mean, .unrest = 0};
   if (!loading_.asks_for_rest()) return felt;
   const Energies energies = this->energies();
@@ -67,24 +100,28 @@ StepFelt Simulation::felt_in(const StepReport& report) const {
   return felt;
 }
 
-SolvedContactProblem Simulation::step_and_catch_problem() {
+template <int Dim>
+SolvedContactProblem SimulationOf<Dim>::step_and_catch_problem() {
   model_->catch_problem();
   step();
   return model_->caught_problem(dt_);
 }
 
-std::string Simulation::early_end() const {
-  return loading_.ended() == Loading::End::exhausted ? model_->exhaustion(box_) : loading_.early_end();
+template <int Dim>
+std::string SimulationOf<Dim>::early_end() const {
+  return loading_.ended() == LoadingOf<Dim>::End::exhausted ? model_->exhaustion(box_) : loading_.early_end();
 }
 
-LoadingOutcome Simulation::outcome() const {
-  if (loading_.ended() != Loading::End::exhausted) return loading_.outcome();
+template <int Dim>
+LoadingOutcome SimulationOf<Dim>::outcome() const {
+  if (loading_.ended() != LoadingOf<Dim>::End::exhausted) return loading_.outcome();
   return {.completed = false,
           .shortfall = fmt::format("the path ends at a strain of {:.4g}, {}: {}", strain(), loading_.where(),
                                    early_end())};
 }
 
-Observation Simulation::observe() const {
+template <int Dim>
+Observation SimulationOf<Dim>::observe() const {
   Observation now{.step = step_,
                   .time = time(),
                   .strain = strain(),
@@ -98,31 +135,37 @@ Observation Simulation::observe() const {
                   .means = {}};
   for (double& force : now.wall_force) force /= row_.duration > 0 ? row_.duration : dt_;
   if (box_.cell.any()) now.shear = box_.shear;
+  now.dimension = Dim;
   if (box_.closed()) {
     now.width = box_.width();
+    now.face = box_.face(Dim - 1);
+    now.side_face = box_.face(0);
     now.packing = packing();
   } else {
     const auto [low, high] = model_->extent();
     now.width = high - low;
+    now.face = std::numbers::pi / 4 * now.width * now.width;
   }
   return now;
 }
 
 /// Bodies with their velocities over L x_c, at which a periodic cell carries their grains.
-Bodies Simulation::over_cell(Bodies bodies) const {
+template <int Dim>
+BodiesOf<Dim> SimulationOf<Dim>::over_cell(BodiesOf<Dim> bodies) const {
   if (!box_.cell.any()) return bodies;
-  const Mat<2> L = box_.cell.gradient();
-  const std::vector<Vec<2>> centre = model_->centres();
+  const Mat<Dim> L = box_.cell.gradient();
+  const std::vector<Vec<Dim>> centre = model_->centres();
   for (std::size_t i = 0; i < bodies.velocity.size(); ++i)
     bodies.velocity[i] -= L * centre[static_cast<std::size_t>(bodies.grain[i])];
   return bodies;
 }
 
 /// In a periodic cell the energy of motion is that over L x_c; the rest is the cell's.
-Energies Simulation::energies() const {
+template <int Dim>
+Energies SimulationOf<Dim>::energies() const {
   Energies energies = model_->energies();
   if (!box_.cell.any()) return energies;
-  const Bodies bodies = model_->bodies(), peculiar = over_cell(bodies);
+  const BodiesOf<Dim> bodies = model_->bodies(), peculiar = over_cell(bodies);
   double carried = 0;
   for (std::size_t i = 0; i < bodies.mass.size(); ++i)
     carried +=
@@ -133,61 +176,82 @@ Energies Simulation::energies() const {
   return energies;
 }
 
-PackingMeasures Simulation::packing() const {
+template <int Dim>
+PackingMeasures SimulationOf<Dim>::packing() const {
   const std::vector<double> radius = model_->radii();
-  const std::vector<Vec<2>> centre = model_->centres();
-  const std::vector<ContactPoint> contacts = model_->contacts();
-  const Outlines outlines = model_->outlines();
-  const Bodies bodies = over_cell(model_->bodies());
-  return measure_packing({.width = box_.width(),
-                          .height = box_.height(),
-                          .radius = radius,
-                          .grain_area = outlines.area,
-                          .centre = centre,
-                          .outline = outlines.vertex,
-                          .outline_begin = outlines.begin,
-                          .contacts = contacts,
-                          .mass = bodies.mass,
-                          .velocity = bodies.velocity,
-                          .density = model_->density(),
-                          .strain_rate = largest_rate()});
+  const std::vector<Vec<Dim>> centre = model_->centres();
+  const std::vector<ContactPointOf<Dim>> contacts = model_->contacts();
+  const OutlinesOf<Dim> outlines = model_->outlines();
+  const BodiesOf<Dim> bodies = over_cell(model_->bodies());
+  if constexpr (Dim == 3)
+    return measure_packing(SolidPackingView{.volume = box_.volume(),
+                                            .radius = radius,
+                                            .surface = outlines,
+                                            .centre = centre,
+                                            .contacts = contacts,
+                                            .mass = bodies.mass,
+                                            .velocity = bodies.velocity,
+                                            .density = model_->density(),
+                                            .strain_rate = largest_rate()});
+  else
+    return measure_packing(PackingView{.width = box_.width(),
+                                       .height = box_.height(),
+                                       .radius = radius,
+                                       .grain_area = outlines.area,
+                                       .centre = centre,
+                                       .outline = outlines.vertex,
+                                       .outline_begin = outlines.begin,
+                                       .contacts = contacts,
+                                       .mass = bodies.mass,
+                                       .velocity = bodies.velocity,
+                                       .density = model_->density(),
+                                       .strain_rate = largest_rate()});
 }
 
-void Simulation::begin_row() {
+template <int Dim>
+void SimulationOf<Dim>::begin_row() {
   std::fill(row_.impulse.begin(), row_.impulse.end(), 0.0);
   row_.duration = 0;
   model_->begin_row();
 }
 
 /// The largest of the strain rates [1/s], by which inertia is measured.
-double Simulation::largest_rate() const {
-  if (!box_.cell.any()) return box_.strain_rate(1);
+template <int Dim>
+double SimulationOf<Dim>::largest_rate() const {
+  if (!box_.cell.any()) return box_.strain_rate(Dim - 1);
   double largest = 0;
-  const Mat<2> L = box_.cell.gradient();
-  for (int axis = 0; axis < 2; ++axis) largest = std::max(largest, std::abs(box_.strain_rate(axis)));
+  const Mat<Dim> L = box_.cell.gradient();
+  for (int axis = 0; axis < Dim; ++axis) largest = std::max(largest, std::abs(box_.strain_rate(axis)));
   return std::max(largest, std::abs(L(0, 1)));
 }
 
-Scene Simulation::scene() const {
+template <int Dim>
+Scene SimulationOf<Dim>::scene() const {
   Scene scene = model_->scene(box_);
-  if (box_.cell.any()) move_into_cell(box_.cell, model_->centres(), scene);
-  const double low = box_.bounded(1) ? box_.low(1).point[1] : 0,
-               high = box_.bounded(1) ? box_.high(1).point[1] : box_.height();
-  const double tilt = box_.repeats(1) ? box_.cell.edges(0, 1) : 0;
-  auto [left, right] = std::pair(0.0, box_.width());
-  if (box_.bounded(0))
-    left = box_.low(0).point[0], right = box_.high(0).point[0];
-  else if (!box_.repeats(0))
-    std::tie(left, right) = model_->reach();
-  scene.wall_segments = {left,        low,  right,        low,
-                         left + tilt, high, right + tilt, high};  // in the order of BoxWall
-  if (box_.faces() == 4)
-    scene.wall_segments.insert(scene.wall_segments.end(),
-                               {left, low, left + tilt, high, right, low, right + tilt, high});
-  return scene;
+  if constexpr (Dim == 3) {
+    add_faces(box_, model_->reach(), scene);
+    return scene;
+  } else {
+    if (box_.cell.any()) move_into_cell(box_.cell, model_->centres(), scene);
+    const double low = box_.bounded(1) ? box_.low(1).point[1] : 0,
+                 high = box_.bounded(1) ? box_.high(1).point[1] : box_.height();
+    const double tilt = box_.repeats(1) ? box_.cell.edges(0, 1) : 0;
+    auto [left, right] = std::pair(0.0, box_.width());
+    if (box_.bounded(0))
+      left = box_.low(0).point[0], right = box_.high(0).point[0];
+    else if (!box_.repeats(0))
+      std::tie(left, right) = model_->reach();
+    scene.wall_segments = {left,        low,  right,        low,
+                           left + tilt, high, right + tilt, high};  // in the order of BoxWall
+    if (box_.faces() == 4)
+      scene.wall_segments.insert(scene.wall_segments.end(),
+                                 {left, low, left + tilt, high, right, low, right + tilt, high});
+    return scene;
+  }
 }
 
-void Simulation::visit(StateVisitor& visit) {
+template <int Dim>
+void SimulationOf<Dim>::visit(StateVisitor& visit) {
   model_->visit(visit);
   box_.visit(visit);
   loading_.visit(visit);
@@ -195,13 +259,15 @@ void Simulation::visit(StateVisitor& visit) {
   visit({"row_duration", "s", Owner::run, Role::sum, "since the last row"}, row_.duration);
 }
 
-Checkpoint Simulation::checkpoint() const {
+template <int Dim>
+Checkpoint SimulationOf<Dim>::checkpoint() const {
   StateWriter writer;
-  const_cast<Simulation*>(this)->visit(writer);  // a writer changes nothing
+  const_cast<SimulationOf*>(this)->visit(writer);  // a writer changes nothing
   return {.step = step_, .time = time(), .arrays = std::move(writer.arrays)};
 }
 
-void Simulation::restore(const Checkpoint& checkpoint) {
+template <int Dim>
+void SimulationOf<Dim>::restore(const Checkpoint& checkpoint) {
   StateReader reader(checkpoint.arrays);
   loading_.visit(reader);
   apply_settings();
@@ -211,7 +277,8 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   step_ = checkpoint.step;
 }
 
-void Simulation::begin_from(const Checkpoint& checkpoint) {
+template <int Dim>
+void SimulationOf<Dim>::begin_from(const Checkpoint& checkpoint) {
   StateReader reader(checkpoint.arrays);
   model_->visit(reader);
   box_.visit(reader);
@@ -220,5 +287,8 @@ void Simulation::begin_from(const Checkpoint& checkpoint) {
   steps_planned_ = loading_.steps_planned(dt_);
   begin_row();
 }
+
+template class SimulationOf<2>;
+template class SimulationOf<3>;
 
 }  // namespace softgrain

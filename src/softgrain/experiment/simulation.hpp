@@ -19,58 +19,95 @@ struct Checkpoint {
   Arrays arrays;    ///< as state/field.hpp declares them
 };
 
-/// An experiment, advanced step by step: grains (a model), a box, and a loading.
-class Simulation final {
+/// An experiment as whoever runs and records it sees it, whatever its dimension.
+class AnySimulation {
  public:
-  /// dt [s]: of every step.
-  Simulation(std::unique_ptr<Model> model, Box<2> box, Loading loading, double dt);
-  Simulation(const Simulation& other);
-  Simulation(Simulation&&) = default;
-  Simulation& operator=(Simulation&&) = default;
+  virtual ~AnySimulation() = default;
 
-  bool finished() const { return loading_.finished(); }
+  virtual bool finished() const = 0;
   /// 0 at the start, 1 when finished; never goes back.
-  double progress() const { return loading_.progress(time(), dt_); }
-  double time() const { return static_cast<double>(step_) * dt_; }  ///< [s]
-  double strain() const { return loading_.strain(box_); }           ///< by the walls, as in the rows
-  double time_step() const { return dt_; }                          ///< [s]
-  std::int64_t steps_done() const { return step_; }
-  std::int64_t steps_planned() const { return steps_planned_; }
+  virtual double progress() const = 0;
+  virtual double time() const = 0;       ///< [s]
+  virtual double strain() const = 0;     ///< by the walls, as in the rows
+  virtual double time_step() const = 0;  ///< [s]
+  virtual std::int64_t steps_done() const = 0;
+  virtual std::int64_t steps_planned() const = 0;
   /// Why the simulation has finished before its last planned step, for the user; "" if it has not.
-  std::string early_end() const;
+  virtual std::string early_end() const = 0;
   /// What a finished simulation made of its loading; completed and silent before.
-  LoadingOutcome outcome() const;
+  virtual LoadingOutcome outcome() const = 0;
   /// True after the last step before the load turns: a state worth keeping.
-  bool at_turning_point() const { return loading_.at_turning_point(); }
-  /// Before the first step: the walls leave the stages of the case for this motion. Raises UsageError.
-  void follow(WallMotion motion);
+  virtual bool at_turning_point() const = 0;
 
   /// Advances by one time step. Raises NumericalError when the state is not finite or the overlap shows that
   /// no solution exists.
-  StepReport step();
+  virtual StepReport step() = 0;
   /// Advances by one time step too, and returns the contact problem that was solved in it, with its impulses
   /// per metre of depth; where a step solves several, the last. Raises UsageError where no such problem can
   /// be had.
-  SolvedContactProblem step_and_catch_problem();
+  virtual SolvedContactProblem step_and_catch_problem() = 0;
 
   /// What a row of series.csv says now (observe/columns.hpp). Wall forces and iterations are means over the
   /// steps since `begin_row`.
-  Observation observe() const;
-  void begin_row();
-  Energies energies() const;
-  Scene scene() const;
-  std::vector<GrainView> grains() const { return model_->grains(); }
-  const Model& model() const { return *model_; }
-  const Box<2>& box() const { return box_; }
+  virtual Observation observe() const = 0;
+  virtual void begin_row() = 0;
+  virtual Scene scene() const = 0;
 
-  Checkpoint checkpoint() const;
+  virtual Checkpoint checkpoint() const = 0;
   /// Raises IoError for a checkpoint that is not of this case.
-  void restore(const Checkpoint& checkpoint);
+  virtual void restore(const Checkpoint& checkpoint) = 0;
   /// Before the first step: takes grains and walls from another run's checkpoint, with their energies and
   /// what was spent so far. Steps and time begin anew, and so does the loading; its strains count from where
   /// the other run began. Raises IoError for a checkpoint of other grains.
-  void begin_from(const Checkpoint& checkpoint);
-  void visit(StateVisitor& visit);
+  virtual void begin_from(const Checkpoint& checkpoint) = 0;
+  virtual void visit(StateVisitor& visit) = 0;
+
+ protected:
+  AnySimulation() = default;
+  AnySimulation(const AnySimulation&) = default;
+  AnySimulation(AnySimulation&&) = default;
+  AnySimulation& operator=(const AnySimulation&) = default;
+  AnySimulation& operator=(AnySimulation&&) = default;
+};
+
+/// An experiment, advanced step by step: grains (a model), a box, and a loading.
+template <int Dim>
+class SimulationOf final : public AnySimulation {
+ public:
+  /// dt [s]: of every step.
+  SimulationOf(std::unique_ptr<ModelOf<Dim>> model, Box<Dim> box, LoadingOf<Dim> loading, double dt);
+  SimulationOf(const SimulationOf& other);
+  SimulationOf(SimulationOf&&) = default;
+  SimulationOf& operator=(SimulationOf&&) = default;
+
+  bool finished() const override { return loading_.finished(); }
+  double progress() const override { return loading_.progress(time(), dt_); }
+  double time() const override { return static_cast<double>(step_) * dt_; }
+  double strain() const override { return loading_.strain(box_); }
+  double time_step() const override { return dt_; }
+  std::int64_t steps_done() const override { return step_; }
+  std::int64_t steps_planned() const override { return steps_planned_; }
+  std::string early_end() const override;
+  LoadingOutcome outcome() const override;
+  bool at_turning_point() const override { return loading_.at_turning_point(); }
+  /// Before the first step: the walls leave the stages of the case for this motion. Raises UsageError.
+  void follow(WallMotion motion);
+
+  StepReport step() override;
+  SolvedContactProblem step_and_catch_problem() override;
+
+  Observation observe() const override;
+  void begin_row() override;
+  Energies energies() const;
+  Scene scene() const override;
+  std::vector<GrainView> grains() const { return model_->grains(); }
+  const ModelOf<Dim>& model() const { return *model_; }
+  const Box<Dim>& box() const { return box_; }
+
+  Checkpoint checkpoint() const override;
+  void restore(const Checkpoint& checkpoint) override;
+  void begin_from(const Checkpoint& checkpoint) override;
+  void visit(StateVisitor& visit) override;
 
  private:
   /// Since the last row.
@@ -81,16 +118,17 @@ class Simulation final {
   void apply_settings() { model_->set(initial_.then(loading_.settings())); }
   StepFelt felt_in(const StepReport& report) const;
   PackingMeasures packing() const;
-  Bodies over_cell(Bodies bodies) const;
+  BodiesOf<Dim> over_cell(BodiesOf<Dim> bodies) const;
   double largest_rate() const;
 
-  std::unique_ptr<Model> model_;
-  Box<2> box_;
-  Loading loading_;
+  std::unique_ptr<ModelOf<Dim>> model_;
+  Box<Dim> box_;
+  LoadingOf<Dim> loading_;
   Settings initial_;  // of the case, which stages change
   double dt_ = 0;
   std::int64_t step_ = 0, steps_planned_ = 0;
   RowSums row_;
 };
+using Simulation = SimulationOf<2>;
 
 }  // namespace softgrain

@@ -69,6 +69,7 @@ std::vector<Stage> turning(const Case& c) {
              .key = "loading.hold_stress"};
   if (is_isotropic(c))
     hold.drives = {keeps(Part::yy, loading.hold_stress), keeps(Part::xx, loading.hold_stress)};
+  if (is_isotropic(c) && is_in_space(c)) hold.drives.push_back(keeps(Part::xy, loading.hold_stress));
   stages.push_back(hold);
   return stages;
 }
@@ -182,7 +183,8 @@ LoadingFrame frame_of(const Case& c) {
   LoadingFrame frame{.measure = {},
                      .wall_velocity = c.loading.wall_velocity,
                      .aspect = c.sample.aspect,
-                     .packing_fraction = first_packing_fraction(c)};
+                     .packing_fraction = first_packing_fraction(c),
+                     .dimension = c.experiment.dimension};
   if (!is_in_a_box(c)) frame.measure = {StrainMeasure::Kind::of_grain, 2 * c.grain.radius};
   return frame;
 }
@@ -195,7 +197,7 @@ double last_strain(const Case& c) {
   }
   if (c.loading.max_packing_fraction == 0 || !is_in_a_box(c)) return c.loading.max_strain;
   const double filled = std::log(c.loading.max_packing_fraction / first_packing_fraction(c));
-  return std::min(c.loading.max_strain, filled / (is_isotropic(c) ? 2 : 1));
+  return std::min(c.loading.max_strain, filled / (is_isotropic(c) ? c.experiment.dimension : 1));
 }
 
 void check_loading(const Case& c) {

@@ -58,6 +58,13 @@ struct Box {
     for (int axis = 0; axis < Dim; ++axis) product *= length(axis);
     return product;
   }
+  /// What the pair of faces along an axis presses on: the product of the other lengths [m], [m^2] in 3D.
+  double face(int axis) const {
+    double product = 1;
+    for (int other = 0; other < Dim; ++other)
+      if (other != axis) product *= length(other);
+    return product;
+  }
   /// L_kk = (v_high - v_low)/length [1/s], negative in compression.
   double strain_rate(int axis) const {
     if (!bounded(axis)) return cell.gradient()(axis, axis);

@@ -18,9 +18,10 @@ bool is_small(double motion, double smallest_radius) { return motion <= smallest
 
 }  // namespace
 
-void check_wall_motion(const Box<2>& box, double dt, double smallest_radius) {
-  const std::vector<Wall<2>>& walls = box.walls;
-  const Mat<2>& rate = box.cell.rate;
+template <int Dim>
+void check_wall_motion(const Box<Dim>& box, double dt, double smallest_radius) {
+  const std::vector<Wall<Dim>>& walls = box.walls;
+  const Mat<Dim>& rate = box.cell.rate;
   if (const double motion = dt * std::sqrt(contract(rate, rate)); !is_small(motion, smallest_radius))
     refuse_motion(motion, smallest_radius, "cell", "");
   for (std::size_t a = 0; a < walls.size(); ++a) {
@@ -34,12 +35,13 @@ void check_wall_motion(const Box<2>& box, double dt, double smallest_radius) {
   }
 }
 
-AffineMotion::AffineMotion(const Box<2>& box) : gradient(box.cell.gradient()) {
-  const std::vector<Wall<2>>& walls = box.walls;
+template <int Dim>
+AffineMotion<Dim>::AffineMotion(const Box<Dim>& box) : gradient(box.cell.gradient()) {
+  const std::vector<Wall<Dim>>& walls = box.walls;
   constexpr double along = 1 - 1e-9;  // the axis
-  for (int d = 0; d < 2; ++d)
-    for (const Wall<2>& low : walls)
-      for (const Wall<2>& high : walls) {
+  for (int d = 0; d < Dim; ++d)
+    for (const Wall<Dim>& low : walls)
+      for (const Wall<Dim>& high : walls) {
         const double distance = high.point[d] - low.point[d];
         if (low.normal[d] < along || high.normal[d] > -along || !(distance > 0)) continue;
         origin[d] = low.point[d];
@@ -47,5 +49,10 @@ AffineMotion::AffineMotion(const Box<2>& box) : gradient(box.cell.gradient()) {
         rate[d] = (high.velocity[d] - low.velocity[d]) / distance;
       }
 }
+
+template void check_wall_motion(const Box<2>&, double, double);
+template void check_wall_motion(const Box<3>&, double, double);
+template struct AffineMotion<2>;
+template struct AffineMotion<3>;
 
 }  // namespace softgrain

@@ -80,7 +80,7 @@ class UpdatedLagrangianDynamics {
   std::vector<std::vector<Stencil>> stencil_;             // (grains) (points)
   std::vector<Vec<2>> impulse_on_node_;                   // dt f_i [N s/m]
   std::vector<Vec<2>> start_velocity_, kicked_velocity_;  // v_i before and after the kick [m/s]
-  MassDamping damping_;
+  MassDamping<2> damping_;
 };
 
 /// A stable step [s]: `safety` times what a pressure wave in unstrained material needs across a cell [m].

@@ -15,7 +15,8 @@ std::int64_t steps_in(double time, double dt) { return std::llround(time / dt); 
 
 }  // namespace
 
-Loading::Loading(const std::vector<Stage>& stages, const LoadingFrame& frame, const Box<2>& box)
+template <int Dim>
+LoadingOf<Dim>::LoadingOf(const std::vector<Stage>& stages, const LoadingFrame& frame, const Box<Dim>& box)
     : stages_(without_repeats(stages)), frame_(frame) {
   for (int c = 0; c < 3; ++c) frame_.start[c] = length_at_stage_[c] = length(box, c);
   if (frame_.measure.kind == StrainMeasure::Kind::of_box) frame_.measure.length = frame_.start[0];
@@ -23,23 +24,29 @@ Loading::Loading(const std::vector<Stage>& stages, const LoadingFrame& frame, co
   plan_stages();
 }
 
-void Loading::plan_stages() { planned_ = plan(stages_, frame_, travel_start_); }
+template <int Dim>
+void LoadingOf<Dim>::plan_stages() {
+  planned_ = plan(stages_, frame_, travel_start_);
+}
 
 /// The stages that are left, from where the present one began.
-void Loading::plan_rest() {
+template <int Dim>
+void LoadingOf<Dim>::plan_rest() {
   const auto planned = plan(std::span(stages_).subspan(stage_), frame_,
                             {frame_.start[0] - length_at_stage_[0], frame_.start[1] - length_at_stage_[1],
                              frame_.start[2] - length_at_stage_[2]});
   std::copy(planned.begin(), planned.end(), planned_.begin() + static_cast<std::ptrdiff_t>(stage_));
 }
 
-double Loading::length(const Box<2>& box, int component) const {
-  if (component == 2) return -box.shear;
-  const int axis = 1 - component;
+template <int Dim>
+double LoadingOf<Dim>::length(const Box<Dim>& box, int component) const {
+  if (frame_.is_shear(component)) return -box.shear;
+  const int axis = Dim - 1 - component;
   return box.bounded(axis) || box.repeats(axis) ? box.length(axis) : frame_.start[component];
 }
 
-void Loading::begin_at(StateVisitor& visit, const Box<2>& box) {
+template <int Dim>
+void LoadingOf<Dim>::begin_at(StateVisitor& visit, const Box<Dim>& box) {
   visit_start(visit);
   for (int c = 0; c < 3; ++c) {
     length_at_stage_[c] = length(box, c);
@@ -48,7 +55,8 @@ void Loading::begin_at(StateVisitor& visit, const Box<2>& box) {
   plan_stages();
 }
 
-void Loading::follow(WallMotion motion) {
+template <int Dim>
+void LoadingOf<Dim>::follow(WallMotion motion) {
   require(std::isfinite(motion.duration) && motion.duration > 0,
           "the duration of a motion must be > 0, got {} s", motion.duration);
   Stage given = stages_.front();
@@ -62,7 +70,8 @@ void Loading::follow(WallMotion motion) {
   plan_stages();
 }
 
-std::int64_t Loading::steps_planned(double dt) const {
+template <int Dim>
+std::int64_t LoadingOf<Dim>::steps_planned(double dt) const {
   std::int64_t steps = 0;
   for (const PlannedStage& stage : planned_) steps += stage.steps(dt);
   return steps;
@@ -70,7 +79,8 @@ std::int64_t Loading::steps_planned(double dt) const {
 
 /// What was left when the present stage began falls to this one and those to come as their times are
 /// foreseen now.
-double Loading::progress(double time, double dt) const {
+template <int Dim>
+double LoadingOf<Dim>::progress(double time, double dt) const {
   if (finished()) return 1;
   std::int64_t rest = 0;
   for (std::size_t k = stage_; k < planned_.size(); ++k) rest += planned_[k].steps(dt);
@@ -78,13 +88,17 @@ double Loading::progress(double time, double dt) const {
   return progress_at_stage_ + (1 - progress_at_stage_) * done / static_cast<double>(rest);
 }
 
-bool Loading::asks_for_rest() const { return !finished() && stage_now().until.rest.has_value(); }
+template <int Dim>
+bool LoadingOf<Dim>::asks_for_rest() const {
+  return !finished() && stage_now().until.rest.has_value();
+}
 
-void Loading::drive(Box<2>& box, const Model& model, double time, double dt) {
+template <int Dim>
+void LoadingOf<Dim>::drive(Box<Dim>& box, const ModelOf<Dim>& model, double time, double dt) {
   last_of_stage_ = false;
   closing_ = {};
   box.presses.clear();
-  for (Wall<2>& wall : box.walls) wall.velocity = {};
+  for (Wall<Dim>& wall : box.walls) wall.velocity = {};
   box.cell.remap();
   box.cell.rate = {};
   if (stage_ >= stages_.size()) return;  // whoever goes on, the walls rest
@@ -96,18 +110,20 @@ void Loading::drive(Box<2>& box, const Model& model, double time, double dt) {
   for (std::size_t d = 0; d < stage.drives.size(); ++d)
     if (stage.drives[d].control == Control::stress && moves_cell(stage.drives[d], box))
       speeds[d] = push_cell(stage.drives[d], box, model, time, dt);
-  if (box.cell.any()) move_cell(stage, speeds, box);
+  if constexpr (Dim == 2)
+    if (box.cell.any()) move_cell(stage, speeds, box);
   for (std::size_t d = 0; d < stage.drives.size(); ++d) {
-    const auto share = share_of(stage.drives[d].part, frame_.aspect);
+    const auto share = share_in<Dim>(stage.drives[d].part, frame_.aspect);
     for (std::size_t w = 0; w < box.walls.size(); ++w)
       // from 0: a wall that rests has no negative zeros
-      if (share[w] != 0) box.walls[w].velocity = Vec<2>{} + (share[w] * speeds[d]) * box.walls[w].normal;
+      if (share[w] != 0) box.walls[w].velocity = Vec<Dim>{} + (share[w] * speeds[d]) * box.walls[w].normal;
     if (stage.drives[d].control == Control::stress && !moves_cell(stage.drives[d], box))
       box.presses.push_back(press_of(stage.drives[d], box, model, time, dt));
   }
 }
 
-void Loading::after_step(const Box<2>& box, double time, double dt, const StepFelt& felt) {
+template <int Dim>
+void LoadingOf<Dim>::after_step(const Box<Dim>& box, double time, double dt, const StepFelt& felt) {
   number_of_last_ = number_;
   keep_presses(box);
   if (box.closed()) watch(box, dt);
@@ -129,22 +145,29 @@ void Loading::after_step(const Box<2>& box, double time, double dt, const StepFe
 
 /// The mean lags behind a stress that changes evenly, and its own mean lags behind it as far; where the walls
 /// rest there is no lag to make up for.
-double Loading::present_stress(std::size_t part) const {
+template <int Dim>
+double LoadingOf<Dim>::present_stress(std::size_t part) const {
   const int component = component_of(static_cast<Part>(part));
   return closing_[component] != 0 ? 2 * stress_[part] - stress_twice_[part] : stress_[part];
 }
 
-void Loading::watch(const Box<2>& box, double dt) {
+template <int Dim>
+void LoadingOf<Dim>::watch(const Box<Dim>& box, double dt) {
   const double share = std::min(1.0, frame_.wall_velocity * dt / box.height() / averaging_strain);
   const auto on = [&](std::size_t wall) { return box.outward_impulse(wall); };
-  const double below = dt * box.width(), beside = dt * box.height();
+  const double below = dt * box.face(Dim - 1), beside = dt * box.face(Dim - 2);
+  double last = 0;  // xy, in space xx
+  if (Dim == 3)
+    last = (on(4) + on(5)) / (2 * dt * box.face(0));
+  else if (box.cell.any())
+    last = -box.moment(0, 1) / (dt * box.volume());
   const OfParts stress{(on(0) + on(1)) / (2 * below),
                        (on(2) + on(3)) / (2 * beside),
                        on(0) / below,
                        on(1) / below,
                        on(2) / beside,
                        on(3) / beside,
-                       box.cell.any() ? -box.moment(0, 1) / (dt * box.volume()) : 0};
+                       last};
   for (std::size_t p = 0; p < parts_with_stress; ++p) {
     stress_[p] += share * (stress[p] - stress_[p]);
     stress_twice_[p] += share * (stress_[p] - stress_twice_[p]);
@@ -152,7 +175,8 @@ void Loading::watch(const Box<2>& box, double dt) {
   }
 }
 
-void Loading::judge_presses(const Box<2>& box, double time, double dt) {
+template <int Dim>
+void LoadingOf<Dim>::judge_presses(const Box<Dim>& box, double time, double dt) {
   const std::int64_t done = steps_in(time - stage_start_, dt) - 1;
   const std::int64_t steps = planned_[stage_].steps(dt);
   const Stage& stage = stage_now();
@@ -164,7 +188,8 @@ void Loading::judge_presses(const Box<2>& box, double time, double dt) {
   }
 }
 
-void Loading::leave_stage(std::size_t next, const Box<2>& box, double time, double dt) {
+template <int Dim>
+void LoadingOf<Dim>::leave_stage(std::size_t next, const Box<Dim>& box, double time, double dt) {
   note_unkept();
   progress_at_stage_ = progress(time, dt);
   do ++stage_;
@@ -172,7 +197,8 @@ void Loading::leave_stage(std::size_t next, const Box<2>& box, double time, doub
   if (stage_ < stages_.size()) begin_stage(box, time);
 }
 
-void Loading::begin_stage(const Box<2>& box, double time) {
+template <int Dim>
+void LoadingOf<Dim>::begin_stage(const Box<Dim>& box, double time) {
   ++number_;
   stage_start_ = time;
   stress_at_stage_ = stress_;
@@ -189,5 +215,8 @@ void Loading::begin_stage(const Box<2>& box, double time) {
     press_force_[part] = force[part];
   }
 }
+
+template class LoadingOf<2>;
+template class LoadingOf<3>;
 
 }  // namespace softgrain

@@ -33,17 +33,18 @@ struct StepFelt {
 /// the step that makes what is left of the way, counted from the travel really made: no error of a stage, be
 /// it a rounding or a stage shorter than a step, reaches the next. Walls that keep a stress are presses,
 /// which the model moves.
-class Loading {
+template <int Dim>
+class LoadingOf {
  public:
   /// Why a loading ends before its last stage; the numbers stand in snapshots.
   enum class End : int { none, exit, limit, exhausted };
 
   /// Strains count from this box.
-  Loading(const std::vector<Stage>& stages, const LoadingFrame& frame, const Box<2>& box);
+  LoadingOf(const std::vector<Stage>& stages, const LoadingFrame& frame, const Box<Dim>& box);
 
   /// Goes through its stages from the present state of the box, which a loading of another run left: strains
   /// count from where that run began. `visit` reads its arrays.
-  void begin_at(StateVisitor& visit, const Box<2>& box);
+  void begin_at(StateVisitor& visit, const Box<Dim>& box);
   /// The walls leave the stages for this motion of the part that the first stage moves. Raises UsageError for
   /// a duration that is not positive.
   void follow(WallMotion motion);
@@ -58,7 +59,7 @@ class Loading {
   int number() const { return number_of_last_; }
   /// True if the coming step is the first of a stage but the first one.
   bool at_turning_point() const { return !finished() && number_ != number_of_last_; }
-  double strain(const Box<2>& box) const { return frame_.strain(0, box.height()); }
+  double strain(const Box<Dim>& box) const { return frame_.strain(0, box.height()); }
   /// What the stages up to the one of the coming step have changed.
   const Settings& settings() const { return stages_[std::min(stage_, stages_.size() - 1)].set; }
   /// Whether a stage waits for the grains to come to rest.
@@ -66,9 +67,9 @@ class Loading {
 
   /// Gives the walls their velocities, and the box its presses, for the coming step. Raises UsageError where
   /// a motion gives no number.
-  void drive(Box<2>& box, const Model& model, double time, double dt);
+  void drive(Box<Dim>& box, const ModelOf<Dim>& model, double time, double dt);
   /// Takes the step that was just made, up to `time` [s].
-  void after_step(const Box<2>& box, double time, double dt, const StepFelt& felt);
+  void after_step(const Box<Dim>& box, double time, double dt, const StepFelt& felt);
   void end(End why) { ended_ = why; }
 
   /// Why it ends before its last stage, for the user; "" if it does not, or the model says it.
@@ -85,35 +86,37 @@ class Loading {
   using OfParts = std::array<double, parts_with_stress>;
   using Speeds = std::array<double, 4>;
 
-  double length(const Box<2>& box, int component) const;
+  double length(const Box<Dim>& box, int component) const;
   const Stage& stage_now() const { return stages_[stage_]; }
-  Speeds speeds_of(const Stage& stage, const Box<2>& box, double time, double dt) const;
+  Speeds speeds_of(const Stage& stage, const Box<Dim>& box, double time, double dt) const;
   double closing_speed(const Stage& stage, const Speeds& speeds, int component) const;
-  double speed_to_strain(const Drive& drive, const Box<2>& box, double time, double dt) const;
-  void end_at_strain(const Stage& stage, const Box<2>& box, Speeds& speeds, double dt);
-  Press press_of(const Drive& drive, const Box<2>& box, const Model& model, double time, double dt) const;
-  bool moves_cell(const Drive& drive, const Box<2>& box) const;
-  double pressed_length(const Drive& drive, const Box<2>& box) const;
-  double impulse_of(const Drive& drive, const Box<2>& box) const;
-  double push_cell(const Drive& drive, const Box<2>& box, const Model& model, double time, double dt);
-  void move_cell(const Stage& stage, const Speeds& speeds, Box<2>& box) const;
-  void keep_presses(const Box<2>& box);
+  double speed_to_strain(const Drive& drive, const Box<Dim>& box, double time, double dt) const;
+  void end_at_strain(const Stage& stage, const Box<Dim>& box, Speeds& speeds, double dt);
+  Press press_of(const Drive& drive, const Box<Dim>& box, const ModelOf<Dim>& model, double time,
+                 double dt) const;
+  bool moves_cell(const Drive& drive, const Box<Dim>& box) const;
+  double pressed_length(const Drive& drive, const Box<Dim>& box) const;
+  double impulse_of(const Drive& drive, const Box<Dim>& box) const;
+  double push_cell(const Drive& drive, const Box<Dim>& box, const ModelOf<Dim>& model, double time,
+                   double dt);
+  void move_cell(const Stage& stage, const Speeds& speeds, Box<Dim>& box) const;
+  void keep_presses(const Box<Dim>& box);
   void keep_press(const Drive& drive, const Press& press);
 
-  void watch(const Box<2>& box, double dt);
+  void watch(const Box<Dim>& box, double dt);
   double present_stress(std::size_t part) const;
-  void judge_presses(const Box<2>& box, double time, double dt);
+  void judge_presses(const Box<Dim>& box, double time, double dt);
   const Exit* exit_taken(const StepFelt& felt) const;
-  bool is_over(const Box<2>& box, const StepFelt& felt) const;
-  bool is_at_strain(const Box<2>& box, int component, double strain) const;
+  bool is_over(const Box<Dim>& box, const StepFelt& felt) const;
+  bool is_at_strain(const Box<Dim>& box, int component, double strain) const;
   bool is_at_stress(std::size_t part, double stress) const;
-  bool is_at_limit(const Box<2>& box) const;
+  bool is_at_limit(const Box<Dim>& box) const;
   std::array<double, 3> strains_at_stage() const;
 
-  void leave_stage(std::size_t next, const Box<2>& box, double time, double dt);
+  void leave_stage(std::size_t next, const Box<Dim>& box, double time, double dt);
   void note_unkept();
   void note_unreached();
-  void begin_stage(const Box<2>& box, double time);
+  void begin_stage(const Box<Dim>& box, double time);
   void visit_start(StateVisitor& visit);
   void visit_stage(StateVisitor& visit);
   void visit_stresses(StateVisitor& visit);
@@ -154,5 +157,6 @@ class Loading {
   int unkept_stage_ = -1, unkept_part_ = 0;
   int unreached_stage_ = -1, unreached_part_ = 0;  // the first stress that did not end its stage
 };
+using Loading = LoadingOf<2>;
 
 }  // namespace softgrain

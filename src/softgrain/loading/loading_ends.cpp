@@ -10,7 +10,8 @@ constexpr double no_stress = 1e-3;
 
 }  // namespace
 
-const Exit* Loading::exit_taken(const StepFelt& felt) const {
+template <int Dim>
+const Exit* LoadingOf<Dim>::exit_taken(const StepFelt& felt) const {
   for (const Exit& exit : stage_now().exits) {
     if (exit.overlap > 0 && felt.overlap_mean >= exit.overlap) return &exit;
     const bool presses = !exit.to_last || closing_[0] > 0;
@@ -19,7 +20,8 @@ const Exit* Loading::exit_taken(const StepFelt& felt) const {
   return nullptr;
 }
 
-bool Loading::is_over(const Box<2>& box, const StepFelt& felt) const {
+template <int Dim>
+bool LoadingOf<Dim>::is_over(const Box<Dim>& box, const StepFelt& felt) const {
   const Until& until = stage_now().until;
   for (int c = 0; c < 3 && !stage_now().towards; ++c)
     if (until.strain[c] && is_at_strain(box, c, *until.strain[c])) return true;
@@ -28,33 +30,41 @@ bool Loading::is_over(const Box<2>& box, const StepFelt& felt) const {
   if (until.overlap && felt.overlap_mean >= *until.overlap) return true;
   if (until.rest && felt.unrest < *until.rest) return true;
   if (!until.packing_fraction) return false;
-  const double shrunk = frame_.start[0] * frame_.start[1] / (length(box, 0) * length(box, 1));
+  double shrunk = frame_.start[0] * frame_.start[1] / (length(box, 0) * length(box, 1));
+  if (Dim == 3) shrunk *= frame_.start[2] / length(box, 2);
   return frame_.packing_fraction * shrunk >= *until.packing_fraction;
 }
 
-std::array<double, 3> Loading::strains_at_stage() const {
+template <int Dim>
+std::array<double, 3> LoadingOf<Dim>::strains_at_stage() const {
   return {frame_.strain(0, length_at_stage_[0]), frame_.strain(1, length_at_stage_[1]),
           frame_.strain(2, length_at_stage_[2])};
 }
 
 /// From the side from which the stage comes.
-bool Loading::is_at_strain(const Box<2>& box, int component, double strain) const {
+template <int Dim>
+bool LoadingOf<Dim>::is_at_strain(const Box<Dim>& box, int component, double strain) const {
   const double now = frame_.strain(component, length(box, component));
   return strain > strains_at_stage()[component] ? now >= strain : now <= strain;
 }
 
-bool Loading::is_at_stress(std::size_t part, double stress) const {
+template <int Dim>
+bool LoadingOf<Dim>::is_at_stress(std::size_t part, double stress) const {
   const double now = present_stress(part);
   if (stress > stress_at_stage_[part]) return now >= stress;
   return now <= std::max(stress, no_stress * largest_[part]);
 }
 
-bool Loading::is_at_limit(const Box<2>& box) const {
+template <int Dim>
+bool LoadingOf<Dim>::is_at_limit(const Box<Dim>& box) const {
   const auto at_start = strains_at_stage();
   const auto limit = limit_of(stage_now(), at_start);
   if (!limit) return false;
   const double now = frame_.strain(limit->component, length(box, limit->component));
   return limit->strain > at_start[limit->component] ? now >= limit->strain : now <= limit->strain;
 }
+
+template class LoadingOf<2>;
+template class LoadingOf<3>;
 
 }  // namespace softgrain

@@ -13,32 +13,36 @@ constexpr double steps_behind = 30;
 /// Of the way of a stage: less is no step more.
 constexpr double rounding = 1e-9;
 
-double side_of_wall(const Box<2>& box, std::size_t wall) {
-  return wall <= top_wall ? box.width() : box.height();
+template <int Dim>
+double side_of_wall(const Box<Dim>& box, std::size_t wall) {
+  return box.face(Dim - 1 - static_cast<int>(wall / 2));
 }
 
 }  // namespace
 
-bool Loading::moves_cell(const Drive& drive, const Box<2>& box) const {
-  return drive.part == Part::xy || box.repeats(axis_of(drive.part));
+template <int Dim>
+bool LoadingOf<Dim>::moves_cell(const Drive& drive, const Box<Dim>& box) const {
+  return (Dim == 2 && drive.part == Part::xy) || box.repeats(axis_in<Dim>(drive.part));
 }
 
 /// At which these parts move the cell: no contact moves it within a step.
-void Loading::move_cell(const Stage& stage, const Speeds& speeds, Box<2>& box) const {
-  PeriodicCell<2>& cell = box.cell;
+template <int Dim>
+void LoadingOf<Dim>::move_cell(const Stage& stage, const Speeds& speeds, Box<Dim>& box) const {
+  PeriodicCell<Dim>& cell = box.cell;
   std::array<double, 3> closing{};
   for (std::size_t d = 0; d < stage.drives.size(); ++d)
     for (int c = 0; c < 3; ++c)
-      closing[c] += closing_share(stage.drives[d].part, c, frame_.aspect) * speeds[d];
+      closing[c] += closing_share(stage.drives[d].part, c, frame_.aspect, Dim) * speeds[d];
   for (int axis = 0; axis < 2; ++axis)
-    if (box.repeats(axis)) cell.rate(axis, axis) = 0 - closing[1 - axis];
+    if (box.repeats(axis)) cell.rate(axis, axis) = 0 - closing[static_cast<std::size_t>(1 - axis)];
   cell.rate(0, 1) = cell.rate(0, 0) / cell.edges(0, 0) * cell.edges(0, 1) + closing[2] * cell.edges(1, 1);
 }
 
 /// sum_w share_w l_w [m]: what a stress presses on.
-double Loading::pressed_length(const Drive& drive, const Box<2>& box) const {
-  if (drive.part == Part::xy) return box.width();
-  const auto share = share_of(drive.part, frame_.aspect);
+template <int Dim>
+double LoadingOf<Dim>::pressed_length(const Drive& drive, const Box<Dim>& box) const {
+  if (Dim == 2 && drive.part == Part::xy) return box.width();
+  const auto share = share_in<Dim>(drive.part, frame_.aspect);
   double length = 0;
   for (std::size_t w = 0; w < box.faces(); ++w)
     if (share[w] != 0) length += share[w] * side_of_wall(box, w);
@@ -46,9 +50,10 @@ double Loading::pressed_length(const Drive& drive, const Box<2>& box) const {
 }
 
 /// sum_w share_w p_w of the last step [N s/m]; of xy the impulse along x on what lies higher.
-double Loading::impulse_of(const Drive& drive, const Box<2>& box) const {
-  if (drive.part == Part::xy) return -box.moment(0, 1) / box.height();
-  const auto share = share_of(drive.part, frame_.aspect);
+template <int Dim>
+double LoadingOf<Dim>::impulse_of(const Drive& drive, const Box<Dim>& box) const {
+  if (Dim == 2 && drive.part == Part::xy) return -box.moment(0, 1) / box.height();
+  const auto share = share_in<Dim>(drive.part, frame_.aspect);
   double impulse = 0;
   for (std::size_t w = 0; w < box.faces(); ++w)
     if (share[w] != 0) impulse += share[w] * box.outward_impulse(w);
@@ -56,7 +61,9 @@ double Loading::impulse_of(const Drive& drive, const Box<2>& box) const {
 }
 
 /// The cell as a press, with the impulses of the last step (docs/decisions/0043).
-double Loading::push_cell(const Drive& drive, const Box<2>& box, const Model& model, double time, double dt) {
+template <int Dim>
+double LoadingOf<Dim>::push_cell(const Drive& drive, const Box<Dim>& box, const ModelOf<Dim>& model,
+                                 double time, double dt) {
   const double unit = drive.part == Part::xy ? box.height() : 1;  // of a speed
   Press press = press_of(drive, box, model, time, dt);
   const double impulse = impulse_of(drive, box);
@@ -66,14 +73,16 @@ double Loading::push_cell(const Drive& drive, const Box<2>& box, const Model& mo
   return v / unit;
 }
 
-Loading::Speeds Loading::speeds_of(const Stage& stage, const Box<2>& box, double time, double dt) const {
+template <int Dim>
+typename LoadingOf<Dim>::Speeds LoadingOf<Dim>::speeds_of(const Stage& stage, const Box<Dim>& box,
+                                                          double time, double dt) const {
   Speeds speeds{};
   for (std::size_t d = 0; d < stage.drives.size(); ++d) {
     const Drive& drive = stage.drives[d];
     const int component = component_of(drive.part);
     if (drive.control == Control::velocity) speeds[d] = drive.value;
     if (drive.control == Control::rate)
-      speeds[d] = drive.value * (component == 2 ? 1 : length(box, component));
+      speeds[d] = drive.value * (frame_.is_shear(component) ? 1 : length(box, component));
     if (drive.control == Control::strain) speeds[d] = speed_to_strain(drive, box, time, dt);
     if (drive.control == Control::stress) speeds[d] = press_speed_[number_of(drive.part)];
     if (stage.towards && stage.until.strain[0]) {
@@ -89,30 +98,34 @@ Loading::Speeds Loading::speeds_of(const Stage& stage, const Box<2>& box, double
 }
 
 /// That brings the walls to l_0 e^(-A wave(t)), l_0 their distance at the start of the stage.
-double Loading::speed_to_strain(const Drive& drive, const Box<2>& box, double time, double dt) const {
+template <int Dim>
+double LoadingOf<Dim>::speed_to_strain(const Drive& drive, const Box<Dim>& box, double time,
+                                       double dt) const {
   const int component = component_of(drive.part);
   const double wave = wave_at(drive.wave, time + dt - stage_start_, drive.period);
   const double start = length_at_stage_[component];
   const double aim =
-      component == 2 ? start - drive.amplitude * wave : start * std::exp(-drive.amplitude * wave);
+      frame_.is_shear(component) ? start - drive.amplitude * wave : start * std::exp(-drive.amplitude * wave);
   return (length(box, component) - aim) / dt;
 }
 
 /// Of the walls that are given a velocity.
-double Loading::closing_speed(const Stage& stage, const Speeds& speeds, int component) const {
+template <int Dim>
+double LoadingOf<Dim>::closing_speed(const Stage& stage, const Speeds& speeds, int component) const {
   double closing = 0;
   for (std::size_t d = 0; d < stage.drives.size(); ++d)
     if (stage.drives[d].is_given())
-      closing += closing_share(stage.drives[d].part, component, frame_.aspect) * speeds[d];
+      closing += closing_share(stage.drives[d].part, component, frame_.aspect, Dim) * speeds[d];
   return closing;
 }
 
 /// In the last step of a stage walls make what is left of their way to its strain.
-void Loading::end_at_strain(const Stage& stage, const Box<2>& box, Speeds& speeds, double dt) {
+template <int Dim>
+void LoadingOf<Dim>::end_at_strain(const Stage& stage, const Box<Dim>& box, Speeds& speeds, double dt) {
   for (int c = 0; c < 3; ++c) {
     if (!stage.until.strain[c] || closing_[c] == 0) continue;
     const bool alone = std::all_of(stage.drives.begin(), stage.drives.end(), [&](const Drive& drive) {
-      return drive.is_given() || closing_share(drive.part, c, 1) == 0 || drive.control == Control::rest;
+      return drive.is_given() || closing_share(drive.part, c, 1, Dim) == 0 || drive.control == Control::rest;
     });
     if (!alone) continue;
     const double to = frame_.travel(c, *stage.until.strain[c]), closing = closing_[c];
@@ -127,14 +140,17 @@ void Loading::end_at_strain(const Stage& stage, const Box<2>& box, Speeds& speed
   }
 }
 
-Press Loading::press_of(const Drive& drive, const Box<2>& box, const Model& model, double time,
-                        double dt) const {
-  const auto share = share_of(drive.part, frame_.aspect);
+template <int Dim>
+Press LoadingOf<Dim>::press_of(const Drive& drive, const Box<Dim>& box, const ModelOf<Dim>& model,
+                               double time, double dt) const {
+  const auto share = share_in<Dim>(drive.part, frame_.aspect);
   const bool of_cell = moves_cell(drive, box);
   const double pressed = pressed_length(drive, box);
-  const PressBody body = model.press_body(box, axis_of(drive.part), (of_cell ? steps_behind : 1) * dt);
+  const PressBody body = model.press_body(box, axis_in<Dim>(drive.part), (of_cell ? steps_behind : 1) * dt);
   const std::size_t part = number_of(drive.part);
-  return {.share = {share[0], share[1], share[2], share[3]},
+  std::array<double, 6> of_walls{};
+  std::copy(share.begin(), share.end(), of_walls.begin());
+  return {.share = of_walls,
           .force = drive.target(time + dt - stage_start_) * pressed,
           .mass = body.mass * pressed,
           .damper = body.damper * pressed,
@@ -144,19 +160,24 @@ Press Loading::press_of(const Drive& drive, const Box<2>& box, const Model& mode
           .waiting = press_waiting_[part]};
 }
 
-void Loading::keep_press(const Drive& drive, const Press& press) {
+template <int Dim>
+void LoadingOf<Dim>::keep_press(const Drive& drive, const Press& press) {
   const std::size_t part = number_of(drive.part);
   press_speed_[part] = press.speed;
   press_force_[part] = press.mean_force;
   press_waiting_[part] = press.waiting;
 }
 
-void Loading::keep_presses(const Box<2>& box) {
+template <int Dim>
+void LoadingOf<Dim>::keep_presses(const Box<Dim>& box) {
   if (stage_ >= stages_.size()) return;
   std::size_t press = 0;
   for (const Drive& drive : stage_now().drives)
     if (drive.control == Control::stress && !moves_cell(drive, box) && press < box.presses.size())
       keep_press(drive, box.presses[press++]);
 }
+
+template class LoadingOf<2>;
+template class LoadingOf<3>;
 
 }  // namespace softgrain

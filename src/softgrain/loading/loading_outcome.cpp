@@ -25,7 +25,8 @@ std::string asked_of(const Stage& stage, std::size_t number) {
 }  // namespace
 
 /// Keeps the first stress that was not kept.
-void Loading::note_unkept() {
+template <int Dim>
+void LoadingOf<Dim>::note_unkept() {
   if (unkept_stage_ >= 0) return;
   const Stage& stage = stage_now();
   for (std::size_t d = 0; d < stage.drives.size() && unkept_stage_ < 0; ++d) {
@@ -37,7 +38,8 @@ void Loading::note_unkept() {
 }
 
 /// Keeps the first stress that was to end its stage, and did not.
-void Loading::note_unreached() {
+template <int Dim>
+void LoadingOf<Dim>::note_unreached() {
   const auto& stress = stage_now().until.stress;
   for (std::size_t p = 0; p < parts_with_stress && unreached_stage_ < 0; ++p) {
     if (!stress[p] || is_at_stress(p, *stress[p])) continue;
@@ -46,7 +48,8 @@ void Loading::note_unreached() {
   }
 }
 
-std::string Loading::where() const {
+template <int Dim>
+std::string LoadingOf<Dim>::where() const {
   const std::size_t now = std::min(stage_, stages_.size() - 1);
   if (!stages_[now].towards) return "in " + stages_[now].title(now);
   double last = 0;
@@ -55,12 +58,14 @@ std::string Loading::where() const {
   return fmt::format("before loading.max_strain {:.4g}", last);
 }
 
-std::string Loading::not_reached(std::string_view what, double stress, std::size_t part) const {
+template <int Dim>
+std::string LoadingOf<Dim>::not_reached(std::string_view what, double stress, std::size_t part) const {
   return fmt::format("{} of {:.3g} Pa was not reached: the largest stress was {:.3g} Pa", what, stress,
                      largest_[part]);
 }
 
-std::string Loading::early_end() const {
+template <int Dim>
+std::string LoadingOf<Dim>::early_end() const {
   if (!finished()) return "";
   if (ended_ == End::exit) return fmt::format("{} is reached", stage_now().exits[exit_].key);
   if (ended_ == End::limit) return outcome().shortfall;
@@ -70,7 +75,8 @@ std::string Loading::early_end() const {
                      kept ? "kept" : "asked for, but not kept,", (kept ? held_.front() : unkept_).text());
 }
 
-LoadingOutcome Loading::outcome() const {
+template <int Dim>
+LoadingOutcome LoadingOf<Dim>::outcome() const {
   if (!finished()) return {};
   LoadingOutcome outcome = outcome_of_limit();
   if (outcome.shortfall.empty()) outcome = outcome_of_exits();
@@ -78,7 +84,8 @@ LoadingOutcome Loading::outcome() const {
   return outcome;
 }
 
-LoadingOutcome Loading::outcome_of_limit() const {
+template <int Dim>
+LoadingOutcome LoadingOf<Dim>::outcome_of_limit() const {
   if (ended_ != End::limit) return {};
   const Stage& stage = stage_now();
   std::string text = fmt::format("{} was not reached by strain {:.3g}", asked_of(stage, stage_),
@@ -88,7 +95,8 @@ LoadingOutcome Loading::outcome_of_limit() const {
   return {.completed = false, .shortfall = text};
 }
 
-LoadingOutcome Loading::outcome_of_exits() const {
+template <int Dim>
+LoadingOutcome LoadingOf<Dim>::outcome_of_exits() const {
   if (kept_last_) return {};
   std::vector<Exit> exits;
   for (const Stage& stage : stages_) exits.insert(exits.end(), stage.exits.begin(), stage.exits.end());
@@ -102,7 +110,8 @@ LoadingOutcome Loading::outcome_of_exits() const {
   return {};
 }
 
-LoadingOutcome Loading::outcome_of_stresses() const {
+template <int Dim>
+LoadingOutcome LoadingOf<Dim>::outcome_of_stresses() const {
   if (unkept_stage_ >= 0) {
     const Stage& stage = stages_[unkept_stage_];
     const std::string what = stage.key.empty()
@@ -122,5 +131,8 @@ LoadingOutcome Loading::outcome_of_stresses() const {
   return {.completed = true,
           .shortfall = not_reached(what, *stage.until.stress[unreached_part_], unreached_part_)};
 }
+
+template class LoadingOf<2>;
+template class LoadingOf<3>;
 
 }  // namespace softgrain

@@ -5,7 +5,8 @@
 
 namespace softgrain {
 
-void Loading::visit_start(StateVisitor& visit) {
+template <int Dim>
+void LoadingOf<Dim>::visit_start(StateVisitor& visit) {
   std::vector<double> start(frame_.start.begin(), frame_.start.end());
   visit({"box_start", "m", Owner::run, Role::state,
          "height and width of the box where strains count from, and 0"},
@@ -26,7 +27,8 @@ void visit_numbers(StateVisitor& visit, const Field& field, std::array<double, N
 
 }  // namespace
 
-void Loading::visit_stage(StateVisitor& visit) {
+template <int Dim>
+void LoadingOf<Dim>::visit_stage(StateVisitor& visit) {
   const auto number = [&](std::string_view name, std::string_view unit, std::string_view text, auto& value) {
     visit({name, unit, Owner::run, Role::state, text}, value);
   };
@@ -45,7 +47,8 @@ void Loading::visit_stage(StateVisitor& visit) {
   number("holds_stress", "", "1 from where loading.hold_stress was met on", kept_last_);
 }
 
-void Loading::visit_stresses(StateVisitor& visit) {
+template <int Dim>
+void LoadingOf<Dim>::visit_stresses(StateVisitor& visit) {
   const auto stresses = [&](std::string_view name, std::string_view text, OfParts& values) {
     visit_numbers(visit, {name, "Pa", Owner::run, Role::state, text}, values);
   };
@@ -63,7 +66,8 @@ void Loading::visit_stresses(StateVisitor& visit) {
   press("press_waiting", "s", "for how long that has been too small, or too large", press_waiting_);
 }
 
-void Loading::visit_held(StateVisitor& visit) {
+template <int Dim>
+void LoadingOf<Dim>::visit_held(StateVisitor& visit) {
   const auto declare = [&](std::string_view name, std::string_view text, double HeldStress::*member) {
     std::array<double, 5> values{};
     for (std::size_t d = 0; d < held_.size(); ++d) values[d] = held_[d].*member;
@@ -89,7 +93,8 @@ void Loading::visit_held(StateVisitor& visit) {
   number("unreached_part", "which of its stresses", unreached_part_);
 }
 
-void Loading::visit(StateVisitor& visit) {
+template <int Dim>
+void LoadingOf<Dim>::visit(StateVisitor& visit) {
   visit_start(visit);
   visit_numbers(visit,
                 {"travel_start", "m", Owner::run, Role::state,
@@ -108,5 +113,8 @@ void Loading::visit(StateVisitor& visit) {
       unreached_part_ < 0 || unreached_part_ >= static_cast<int>(parts_with_stress))
     throw IoError("the snapshot's arrays 'stage' or 'loading_end' belong to no stage of this case");
 }
+
+template class LoadingOf<2>;
+template class LoadingOf<3>;
 
 }  // namespace softgrain

@@ -45,9 +45,9 @@ class Planner {
     speed_ = rate_ = {};
     for (const Drive& drive : stage.drives)
       for (int c = 0; c < 3; ++c) {
-        const double share = closing_share(drive.part, c, frame_.aspect);
+        const double share = closing_share(drive.part, c, frame_.aspect, frame_.dimension);
         if (drive.control == Control::velocity) speed_[c] += share * drive.value;
-        if (drive.control == Control::rate) (c == 2 ? speed_ : rate_)[c] += share * drive.value;
+        if (drive.control == Control::rate) (frame_.is_shear(c) ? speed_ : rate_)[c] += share * drive.value;
       }
   }
 
@@ -87,13 +87,13 @@ class Planner {
 }  // namespace
 
 double LoadingFrame::strain(int component, double length) const {
-  if (component == 2) return start[2] - length;
-  return component == 0 ? measure.strain(start[0], length) : std::log(start[1] / length);
+  if (is_shear(component)) return start[2] - length;
+  return component == 0 ? measure.strain(start[0], length) : std::log(start[component] / length);
 }
 
 double LoadingFrame::travel(int component, double strain) const {
-  if (component == 2) return strain;
-  return component == 0 ? measure.travel(strain) : -start[1] * std::expm1(-strain);
+  if (is_shear(component)) return strain;
+  return component == 0 ? measure.travel(strain) : -start[component] * std::expm1(-strain);
 }
 
 std::int64_t PlannedStage::steps(double dt) const {
@@ -124,7 +124,12 @@ std::optional<StrainLimit> limit_of(const Stage& stage, const std::array<double,
   return std::nullopt;
 }
 
-double closing_share(Part part, int component, double aspect) {
+double closing_share(Part part, int component, double aspect, int dimension) {
+  if (dimension == 3) {
+    const auto share = share_in<3>(part, aspect);
+    return share[2 * static_cast<std::size_t>(component)] +
+           share[2 * static_cast<std::size_t>(component) + 1];
+  }
   if (component == 2) return part == Part::xy ? 1 : 0;
   const auto share = share_of(part, aspect);
   return component == 0 ? share[0] + share[1] : share[2] + share[3];

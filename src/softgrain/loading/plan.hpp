@@ -10,14 +10,16 @@
 namespace softgrain {
 
 /// What stages count in. Arrays by component: yy, xx, xy. That of xy is gamma itself, and so are its travel,
-/// and -gamma its length.
+/// and -gamma its length. In space: zz, yy, xx.
 struct LoadingFrame {
   StrainMeasure measure;                 ///< of yy; xx counts as ln(w_start/w)
   std::array<double, 3> start{1, 1, 0};  ///< height and width where strains count from [m]
   double wall_velocity = 1;              ///< of walls that keep a stress, at most; of averages [m/s]
   double aspect = 1;                     ///< width over height
   double packing_fraction = 0;           ///< Phi_0 where strains count from
+  int dimension = 2;                     ///< in space the third component is no shear, but xx
 
+  bool is_shear(int component) const { return component == 2 && dimension == 2; }
   double strain(int component, double length) const;  ///< with this distance of the walls [m]
   double travel(int component, double strain) const;  ///< of the walls towards each other [m]
 };
@@ -46,6 +48,6 @@ struct StrainLimit {
 std::optional<StrainLimit> limit_of(const Stage& stage, const std::array<double, 3>& strain_at_start);
 
 /// How much walls of a component come together when its part moves by 1.
-double closing_share(Part part, int component, double aspect);
+double closing_share(Part part, int component, double aspect, int dimension);
 
 }  // namespace softgrain

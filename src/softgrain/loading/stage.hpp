@@ -31,11 +31,26 @@ constexpr std::size_t parts_with_stress = 7;
 
 /// Share of the rate of a part that each wall makes along its normal, by BoxWall.
 std::array<double, 4> share_of(Part part, double aspect);
+/// The same of the walls of a box of Dim dimensions. In space, where the vertical axis is z, `yy` stands for
+/// the vertical pair, `xx` for the pair along y and `xy` for that along x: there is no shear yet.
+template <int Dim>
+std::array<double, 2 * Dim> share_in(Part part, double aspect) {
+  std::array<double, 2 * Dim> share{};
+  const auto plane = share_of(part, aspect);
+  for (std::size_t w = 0; w < plane.size(); ++w) share[w] = plane[w];
+  if constexpr (Dim == 3) share[4] = share[5] = part == Part::all ? 0.5 * aspect : part == Part::xy ? 0.5 : 0;
+  return share;
+}
 constexpr std::size_t number_of(Part part) { return static_cast<std::size_t>(part); }
 /// 1 for what moves along y, or shears, 0 along x.
 int axis_of(Part part);
 /// 0: yy, 1: xx, 2: xy.
 int component_of(Part part);
+/// axis_of in a box of Dim dimensions.
+template <int Dim>
+int axis_in(Part part) {
+  return Dim == 2 ? axis_of(part) : Dim - 1 - component_of(part);
+}
 /// "yy", "top".
 std::string_view name_of(Part part);
 

@@ -48,6 +48,15 @@ struct NeoHookean {
     return h;
   }
 
+  /// h_p = U'(J_p) - mu / J_p [Pa] of N points, each with its own J.
+  template <class T, std::size_t N>
+  [[gnu::always_inline]] std::array<T, N> cofactor_factors(const std::array<T, N>& J) const {
+    const LogInverse<T, N> of = log_inverse(J);
+    std::array<T, N> h;
+    for (std::size_t p = 0; p < N; ++p) h[p] = (volumetric.kirchhoff(J[p], of.log[p]) - mu) * of.inverse[p];
+    return h;
+  }
+
   /// dP_iJ/dF_kL [Pa] at (i Dim + J, k Dim + L) = mu 1 + h' cof F (x) cof F + h d(cof F)/dF.
   template <int Dim, class T>
   [[gnu::always_inline]] Mat<Dim * Dim, T> tangent(const Mat<Dim, T>& F) const {

@@ -6,9 +6,10 @@
 namespace softgrain {
 
 /// Lends a box to the engine of a model while it lives, so that its walls stand in one place.
+template <int Dim>
 class BoxLoan {
  public:
-  BoxLoan(Box<2>& owner, Box<2>& borrower) : owner_(owner), borrower_(borrower) {
+  BoxLoan(Box<Dim>& owner, Box<Dim>& borrower) : owner_(owner), borrower_(borrower) {
     std::swap(owner_, borrower_);
   }
   ~BoxLoan() { std::swap(owner_, borrower_); }
@@ -16,7 +17,7 @@ class BoxLoan {
   BoxLoan& operator=(const BoxLoan&) = delete;
 
  private:
-  Box<2>&owner_, &borrower_;
+  Box<Dim>&owner_, &borrower_;
 };
 
 }  // namespace softgrain

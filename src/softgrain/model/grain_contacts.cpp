@@ -6,13 +6,16 @@
 
 namespace softgrain {
 
-Arrays grain_contacts(std::span<const ContactPoint> points, int grains) {
-  const ContactNetwork network = contact_network(points, grains);
+namespace {
+
+template <int Dim>
+Arrays contacts_of_grains(std::span<const ContactPointOf<Dim>> points, int grains) {
+  const ContactNetworkOf<Dim> network = contact_network(points, grains);
   std::vector<std::int64_t> pair;
   std::vector<double> force;
-  std::vector<Vec<2>> total_force, normal, position;
+  std::vector<Vec<Dim>> total_force, normal, position;
   for (const auto* list : {&network.pairs, &network.walls})
-    for (const GrainPair& p : *list) {
+    for (const auto& p : *list) {
       pair.insert(pair.end(), {p.a, p.b >= 0 ? p.b : grains + wall_index(p.b)});  // its own inverse
       force.push_back(p.normal_force);
       total_force.push_back(p.force);
@@ -24,6 +27,15 @@ Arrays grain_contacts(std::span<const ContactPoint> points, int grains) {
           {"total_force", to_array(total_force)},
           {"normal", to_array(normal)},
           {"position", to_array(position)}};
+}
+
+}  // namespace
+
+Arrays grain_contacts(std::span<const ContactPointOf<2>> points, int grains) {
+  return contacts_of_grains(points, grains);
+}
+Arrays grain_contacts(std::span<const ContactPointOf<3>> points, int grains) {
+  return contacts_of_grains(points, grains);
 }
 
 }  // namespace softgrain

@@ -6,11 +6,18 @@
 
 namespace softgrain {
 
-void Model::catch_problem() {
+template <int Dim>
+void ModelOf<Dim>::catch_problem() {
   throw UsageError("the steps of this model and integrator solve no contact problem that stands alone");
 }
 
-SolvedContactProblem Model::caught_problem(double) { return {}; }
+template <int Dim>
+SolvedContactProblem ModelOf<Dim>::caught_problem(double) {
+  return {};
+}
+
+template class ModelOf<2>;
+template class ModelOf<3>;
 
 PressBody critically_damped(double density, double wave_speed, double length, double dt) {
   const double stiffness = density * wave_speed * wave_speed / length;

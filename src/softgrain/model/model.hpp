@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "softgrain/observe/contact_network.hpp"
 #include "softgrain/observe/energy.hpp"
 #include "softgrain/observe/observation.hpp"
+#include "softgrain/observe/surface_measure.hpp"
 #include "softgrain/state/field.hpp"
 
 namespace softgrain {
@@ -26,7 +28,12 @@ struct Scene {
   /// number on.
   Arrays contacts;
   Arrays outlines;  ///< position (v, 2) of the outlines' vertices, grain (v): a new grain, a new polygon
-  std::vector<double> wall_segments;  ///< x0 y0 x1 y1 for each wall, or edge of a periodic cell [m]
+  /// In space positions have three columns, outlines are closed surfaces, and `surface` has their quads:
+  /// quad (q, 4) of vertices, counter-clockwise seen from outside, grain (q), pressure (q) [Pa] of the cell
+  /// behind
+  Arrays surface;
+  std::vector<double>
+      wall_segments;         ///< in the plane x0 y0 x1 y1 for each wall, or edge of a periodic cell [m]
   std::vector<double> cell;  ///< its lattice vectors, x0 y0 x1 y1, 0 for one that it has not [m]; or empty
 };
 
@@ -51,12 +58,18 @@ struct Outlines {
   double area = 0;             ///< of all grains, deformed: sum of A_g [m^2]
 };
 
+/// In space, how large each grain is.
+template <int Dim>
+using OutlinesOf = std::conditional_t<Dim == 2, Outlines, std::vector<SurfaceMeasure>>;
+
 /// Bodies that move, whatever they are: primaries, nodes or points.
-struct Bodies {
-  std::vector<double> mass;      ///< [kg/m]
-  std::vector<Vec<2>> velocity;  ///< [m/s]
-  std::vector<int> grain;        ///< to which each belongs
+template <int Dim>
+struct BodiesOf {
+  std::vector<double> mass;        ///< [kg/m in the plane]
+  std::vector<Vec<Dim>> velocity;  ///< [m/s]
+  std::vector<int> grain;          ///< to which each belongs
 };
+using Bodies = BodiesOf<2>;
 
 /// Mass and damper of a press, over the area of its walls.
 struct PressBody {
@@ -73,26 +86,27 @@ struct PressBody {
 PressBody critically_damped(double density, double wave_speed, double length, double dt);
 
 /// Grains in a box, however they are modelled. A model knows no case, no path, no row and no file.
-class Model {
+template <int Dim>
+class ModelOf {
  public:
-  virtual ~Model() = default;
-  virtual std::unique_ptr<Model> copy() const = 0;
+  virtual ~ModelOf() = default;
+  virtual std::unique_ptr<ModelOf> copy() const = 0;
 
   /// One step of dt [s]; the walls of the box move by dt times their velocity and get the impulses that they
   /// felt. Raises NumericalError where the state is not finite or no solution is found.
-  virtual StepReport step(Box<2>& box, double dt) = 0;
+  virtual StepReport step(Box<Dim>& box, double dt) = 0;
   /// After a step: true if no smaller box holds the grains. Raises NumericalError where its overlaps show
   /// that the step has no solution.
-  virtual bool is_exhausted(const StepReport&, const Box<2>&) const { return false; }
+  virtual bool is_exhausted(const StepReport&, const Box<Dim>&) const { return false; }
   /// Why no smaller box holds them, for the user.
-  virtual std::string exhaustion(const Box<2>&) const { return ""; }
+  virtual std::string exhaustion(const Box<Dim>&) const { return ""; }
 
   /// All that the next step depends on but the box.
   virtual void visit(StateVisitor& visit) = 0;
   /// After a visitor has read the state: with this box the model is as if it had never stopped, bit for bit.
-  virtual void go_on(const Box<2>&) {}
+  virtual void go_on(const Box<Dim>&) {}
   /// Each grain as a whole gets the velocity L x more, x its centre; the work that this takes is the walls'.
-  virtual void follow(const Mat<2>& /*L*/) {}
+  virtual void follow(const Mat<Dim>& /*L*/) {}
   /// What holds now, of what may change.
   virtual Settings settings() const { return {}; }
   /// From the coming step on. Before a visitor reads the state, so that it is read as it was written.
@@ -100,23 +114,23 @@ class Model {
   /// Sums since the last row begin again.
   virtual void begin_row() {}
 
-  virtual double density() const = 0;               ///< of the grains [kg/m^3]
-  virtual std::vector<double> radii() const = 0;    ///< of the undeformed grains [m]
-  virtual std::vector<Vec<2>> centres() const = 0;  ///< of mass, of the grains [m]
-  virtual Bodies bodies() const = 0;
-  virtual std::vector<ContactPoint> contacts() const = 0;  ///< that carry impulse, of the last step
-  virtual Outlines outlines() const = 0;
+  virtual double density() const = 0;                 ///< of the grains [kg/m^3]
+  virtual std::vector<double> radii() const = 0;      ///< of the undeformed grains [m]
+  virtual std::vector<Vec<Dim>> centres() const = 0;  ///< of mass, of the grains [m]
+  virtual BodiesOf<Dim> bodies() const = 0;
+  virtual std::vector<ContactPointOf<Dim>> contacts() const = 0;  ///< that carry impulse, of the last step
+  virtual OutlinesOf<Dim> outlines() const = 0;
   virtual std::pair<double, double> extent() const = 0;  ///< least and largest x of the grains [m]
   virtual Energies energies() const = 0;
   /// What only this model knows, by the names of its columns.
-  virtual Numbers numbers(const Box<2>& box) const = 0;
+  virtual Numbers numbers(const Box<Dim>& box) const = 0;
   /// Points, contacts and outlines; of walls without sides the x from which to which they are drawn.
-  virtual Scene scene(const Box<2>& box) const = 0;
+  virtual Scene scene(const Box<Dim>& box) const = 0;
   virtual std::pair<double, double> reach() const = 0;
   virtual std::vector<GrainView> grains() const = 0;
 
   /// Of a press along an axis, in steps of dt [s].
-  virtual PressBody press_body(const Box<2>&, int /*axis*/, double /*dt*/) const { return {}; }
+  virtual PressBody press_body(const Box<Dim>&, int /*axis*/, double /*dt*/) const { return {}; }
 
   /// Keeps the contact problem of the next step, with its impulses per metre of depth; where a step solves
   /// several, the last. Raises UsageError where no such problem can be had.
@@ -124,5 +138,6 @@ class Model {
   /// That was kept.
   virtual SolvedContactProblem caught_problem(double dt);
 };
+using Model = ModelOf<2>;
 
 }  // namespace softgrain

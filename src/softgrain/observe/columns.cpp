@@ -1,8 +1,7 @@
 #include "softgrain/observe/columns.hpp"
 
 #include <array>
-
-#include "softgrain/observe/fabric.hpp"
+#include <cstddef>
 
 namespace softgrain {
 namespace {
@@ -21,7 +20,22 @@ Value force_on(const Observation& o) {
 /// Over a stress of the load; 0 where it presses on nothing.
 double ratio_to(double load, double stress) { return load > 0 ? stress / load : 0; }
 
-Value mean_side_force(const Observation& o) { return (o.wall_force[2] + o.wall_force[3]) / 2; }
+Value mean_side_force(const Observation& o) {
+  double sum = 0;
+  for (std::size_t w = 2; w < o.wall_force.size(); ++w) sum += o.wall_force[w];
+  return sum / static_cast<double>(o.wall_force.size() - 2);
+}
+
+/// What bottom and top, and each side wall, press on.
+double face_of(const Observation& o) { return o.dimension == 2 ? o.width : o.face; }
+double side_face_of(const Observation& o) { return o.dimension == 2 ? o.height : o.side_face; }
+
+/// Of a packing in space.
+template <int I, int J>
+Value stress_in_space(const Observation& o) {
+  if (!o.packing || o.dimension == 2) return std::nullopt;
+  return (o.packing->stress(I, J) + o.packing->stress(J, I)) / 2;
+}
 
 /// What only boxes have.
 template <class Function>
@@ -52,14 +66,14 @@ constexpr std::array table{
     Column{"wall_height", "m", every_run, "distance $h$ of the bottom and the top wall", [](const Observation& o) -> Value { return o.height; }},
     Column{"width", "m", every_run, "one grain: its extent across the load; a box: distance of its side walls",
         [](const Observation& o) -> Value { return o.width; }},
-    Column{"stress_bottom", "Pa", every_run, "`force_bottom` over `width` (27)", [](const Observation& o) -> Value { return o.wall_force[0] / o.width; }},
-    Column{"stress_top", "Pa", every_run, "`force_top` over `width` (27)", [](const Observation& o) -> Value { return o.wall_force[1] / o.width; }},
+    Column{"stress_bottom", "Pa", every_run, "`force_bottom` over `width` (27); in space over the area of the box, or of a grain's section, pi/4 `width`^2", [](const Observation& o) -> Value { return o.wall_force[0] / face_of(o); }},
+    Column{"stress_top", "Pa", every_run, "the same of the top wall", [](const Observation& o) -> Value { return o.wall_force[1] / face_of(o); }},
     Column{"stress_side", "Pa", boxes, "mean of the two side walls",
-        [](const Observation& o) { return o.packing ? Value(*mean_side_force(o) / o.height) : std::nullopt; }},
+        [](const Observation& o) { return o.packing ? Value(*mean_side_force(o) / side_face_of(o)) : std::nullopt; }},
     Column{"transmission_ratio", "", boxes, "`stress_bottom` over `stress_top`: what friction at the side walls leaves of the load of the top wall. 0 while that bears nothing",
         [](const Observation& o) { return o.packing ? Value(ratio_to(o.wall_force[1], o.wall_force[0])) : std::nullopt; }},
     Column{"radial_ratio", "", boxes, "`stress_side` over the mean of `stress_bottom` and `stress_top`: radial over axial stress of a die. 0 while nothing presses",
-        [](const Observation& o) { return o.packing ? Value(ratio_to((o.wall_force[0] + o.wall_force[1]) / 2 * o.height, *mean_side_force(o) * o.width)) : std::nullopt; }},
+        [](const Observation& o) { return o.packing ? Value(ratio_to((o.wall_force[0] + o.wall_force[1]) / 2 * side_face_of(o), *mean_side_force(o) * face_of(o))) : std::nullopt; }},
     Column{"force_bottom", "N/m", every_run, "outward force on the bottom wall: impulses of the steps since the row before over their time", force_on<0>},
     Column{"force_top", "N/m", every_run, "the same of the top wall", force_on<1>},
     Column{"sigma_I", "Pa", bonded, R"($F_0/\langle a_0\rangle$, the internal cohesive pressure by which stresses are scaled (16))", NUMBER("sigma_I")},
@@ -87,6 +101,9 @@ constexpr std::array table{
     Column{"stress_xx", "Pa", boxes, "Love-Weber's tensor from contact forces and branch vectors, with the motion's part (62)", PACKING(p.stress(0, 0))},
     Column{"stress_yy", "Pa", boxes, as_before, PACKING(p.stress(1, 1))},
     Column{"stress_xy", "Pa", boxes, as_before, PACKING((p.stress(0, 1) + p.stress(1, 0)) / 2)},
+    Column{"stress_zz", "Pa", boxes, "the same tensor in space; there z is vertical", stress_in_space<2, 2>},
+    Column{"stress_xz", "Pa", boxes, as_before, stress_in_space<0, 2>},
+    Column{"stress_yz", "Pa", boxes, as_before, stress_in_space<1, 2>},
     Column{"shear_strain", "", boxes, R"($\gamma = \int L_{xy}\,\mathrm dt$ of a periodic cell (66); periodic cells only)", [](const Observation& o) { return o.shear; }},
     Column{"stress_ratio", "", boxes, R"(shear stress over vertical stress, $-\sigma_{xy}/\sigma_{yy}$; periodic cells only)",
         [](const Observation& o) { return o.shear && o.packing->stress(1, 1) != 0 ? Value(-o.packing->stress(0, 1) / o.packing->stress(1, 1)) : o.shear ? Value(0.0) : std::nullopt; }},
@@ -94,10 +111,11 @@ constexpr std::array table{
     Column{"inertial_number", "", boxes,
         R"($I = \lvert\dot\varepsilon\rvert\,d\,\sqrt{\rho/p}$; below $10^{-3}$ loading is quasi-static (63). 0 while nothing touches, as in the first row)",
         NUMBER("inertial_number")},
-    Column{"anisotropy", "", boxes, "$a$ of the normals between grains (64)", PACKING(fabric(p.network.pairs).anisotropy)},
-    Column{"force_mean", "N/m", boxes, "mean normal force of the pairs", PACKING(force_distribution(p.network.pairs).mean)},
+    Column{"anisotropy", "", boxes, "$a$ of the normals between grains (64)", NUMBER("anisotropy")},
+    Column{"force_mean", "N/m", boxes, "mean normal force of the pairs", NUMBER("force_mean")},
     Column{"circularity", "", boxes, R"(mean over the grains of $4\pi A_g/P_g^2$ (65))", NUMBER("circularity")},
     Column{"aspect_ratio", "", boxes, R"(mean over the grains of $\sqrt{M_1/M_2}$ (65))", NUMBER("aspect_ratio")},
+    Column{"sphericity", "", boxes, R"(mean over the grains of $(36\pi V_g^2)^{1/3}/A_g$, 1 for a sphere; in space)", NUMBER("sphericity")},
     Column{"least_J", "", elastic,
         R"(least $\det\mathbf F$ of all material points: a point that reaches 0 is turned inside out, and the run ends)", NUMBER("least_J")},
     Column{"contacts", "", every_run, "contacts that carry impulse; of primaries (bpm), of outline vertices (mpm)", NUMBER("contacts")},
@@ -138,11 +156,21 @@ constexpr std::array table{
 
 std::span<const Column> all_columns() { return table; }
 
+namespace {
+
+/// What is per metre of depth in the plane is not in space.
+std::string unit_in(int dimension, std::string_view unit) {
+  if (dimension == 2 || !unit.ends_with("/m")) return std::string(unit);
+  return std::string(unit.substr(0, unit.size() - 2));
+}
+
+}  // namespace
+
 std::vector<Quantity> row_of(const Observation& observation) {
   std::vector<Quantity> row;
   for (const Column& column : table)
     if (const Value value = column.value(observation))
-      row.push_back({std::string(column.name), std::string(column.unit), *value});
+      row.push_back({std::string(column.name), unit_in(observation.dimension, column.unit), *value});
   return row;
 }
 

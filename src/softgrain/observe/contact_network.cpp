@@ -6,7 +6,8 @@
 namespace softgrain {
 namespace {
 
-ContactPoint seen_from_first(const ContactPoint& p) {
+template <int Dim>
+ContactPointOf<Dim> seen_from_first(const ContactPointOf<Dim>& p) {
   if (p.b < 0 || p.a < p.b) return p;
   return {.a = p.b,
           .b = p.a,
@@ -17,7 +18,8 @@ ContactPoint seen_from_first(const ContactPoint& p) {
           .image = -p.image};
 }
 
-void add(GrainPair& pair, const ContactPoint& point) {
+template <int Dim>
+void add(GrainPairOf<Dim>& pair, const ContactPointOf<Dim>& point) {
   const double f_n = dot(point.force, point.normal);
   ++pair.points;
   pair.normal_force += f_n;
@@ -33,15 +35,16 @@ struct Held {
   double z() const { return grains > 0 ? 2.0 * pairs / grains : 0; }
 };
 
-Held held_by(int least, const ContactNetwork& network) {
+template <int Dim>
+Held held_by(int least, const ContactNetworkOf<Dim>& network) {
   std::vector<int> loose(network.grains, 0);
   Held held{.grains = network.grains, .pairs = 0};
   for (bool found = true; found;) {
     found = false;
     std::vector<int> contacts(network.grains, 0);
     held.pairs = 0;
-    for (const GrainPair& pair : network.walls) ++contacts[pair.a];
-    for (const GrainPair& pair : network.pairs) {
+    for (const auto& pair : network.walls) ++contacts[pair.a];
+    for (const auto& pair : network.pairs) {
       if (loose[pair.a] || loose[pair.b]) continue;
       ++contacts[pair.a], ++contacts[pair.b];
       ++held.pairs;
@@ -56,18 +59,17 @@ Held held_by(int least, const ContactNetwork& network) {
   return held;
 }
 
-}  // namespace
-
-ContactNetwork contact_network(std::span<const ContactPoint> points, int grains) {
-  std::vector<ContactPoint> sorted;
-  for (const ContactPoint& point : points)
+template <int Dim>
+ContactNetworkOf<Dim> network_of(std::span<const ContactPointOf<Dim>> points, int grains) {
+  using Point = ContactPointOf<Dim>;
+  std::vector<Point> sorted;
+  for (const Point& point : points)
     if (point.a != point.b && dot(point.force, point.normal) > 0) sorted.push_back(seen_from_first(point));
-  std::stable_sort(sorted.begin(), sorted.end(), [](const ContactPoint& p, const ContactPoint& q) {
-    return std::pair(p.a, p.b) < std::pair(q.a, q.b);
-  });
-  ContactNetwork network{.grains = grains, .pairs = {}, .walls = {}};
-  for (const ContactPoint& point : sorted) {
-    std::vector<GrainPair>& list = point.b < 0 ? network.walls : network.pairs;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Point& p, const Point& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
+  ContactNetworkOf<Dim> network{.grains = grains, .pairs = {}, .walls = {}};
+  for (const Point& point : sorted) {
+    auto& list = point.b < 0 ? network.walls : network.pairs;
     if (list.empty() || list.back().a != point.a || list.back().b != point.b)
       list.push_back({.a = point.a,
                       .b = point.b,
@@ -79,8 +81,8 @@ ContactNetwork contact_network(std::span<const ContactPoint> points, int grains)
                       .image = point.image});
     add(list.back(), point);
   }
-  for (std::vector<GrainPair>* list : {&network.pairs, &network.walls})
-    for (GrainPair& pair : *list) {
+  for (auto* list : {&network.pairs, &network.walls})
+    for (auto& pair : *list) {
       pair.position *= 1 / pair.normal_force;
       const double size = norm(pair.normal);
       if (size > 0) pair.normal *= 1 / size;
@@ -88,10 +90,11 @@ ContactNetwork contact_network(std::span<const ContactPoint> points, int grains)
   return network;
 }
 
-Coordination coordination(const ContactNetwork& network) {
+template <int Dim>
+Coordination coordination_of(const ContactNetworkOf<Dim>& network) {
   const int n = network.grains;
   if (n == 0) return {};
-  const Held no_rattlers = held_by(2, network), backbone = held_by(3, network);
+  const Held no_rattlers = held_by(Dim, network), backbone = held_by(Dim + 1, network);
   const auto pairs = static_cast<double>(network.pairs.size()),
              with_walls = pairs + static_cast<double>(network.walls.size());
   return {.z = 2 * pairs / n,
@@ -101,6 +104,18 @@ Coordination coordination(const ContactNetwork& network) {
           .backbone = static_cast<double>(backbone.grains) / n,
           .z_with_walls = 2 * with_walls / n};
 }
+
+}  // namespace
+
+ContactNetworkOf<2> contact_network(std::span<const ContactPointOf<2>> points, int grains) {
+  return network_of(points, grains);
+}
+ContactNetworkOf<3> contact_network(std::span<const ContactPointOf<3>> points, int grains) {
+  return network_of(points, grains);
+}
+
+Coordination coordination(const ContactNetworkOf<2>& network) { return coordination_of(network); }
+Coordination coordination(const ContactNetworkOf<3>& network) { return coordination_of(network); }
 
 double mean_sides(const ContactNetwork& network, std::span<const double> perimeter, double least_share) {
   if (network.grains == 0) return 0;

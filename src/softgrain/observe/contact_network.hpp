@@ -7,38 +7,45 @@
 namespace softgrain {
 
 /// A point where two grains, or a grain and a wall, push on each other.
-struct ContactPoint {
+template <int Dim>
+struct ContactPointOf {
   int a = 0;          ///< a grain
   int b = 0;          ///< another grain, or wall w as `wall_index(w)`
-  Vec<2> force;       ///< of a on b [N/m]
-  Vec<2> normal;      ///< unit, from a to b
-  Vec<2> position;    ///< [m]
-  double length = 0;  ///< share of the outline that touches here [m]
-  Vec<2> image{};     ///< from where b is to where a sees it, across the edge of a periodic cell [m]
+  Vec<Dim> force;     ///< of a on b [N/m in the plane]
+  Vec<Dim> normal;    ///< unit, from a to b
+  Vec<Dim> position;  ///< [m]
+  double length = 0;  ///< share of the outline that touches here [m], in the plane
+  Vec<Dim> image{};   ///< from where b is to where a sees it, across the edge of a periodic cell [m]
 };
+using ContactPoint = ContactPointOf<2>;
 
 /// The number of wall w as a body of a ContactPoint: below every grain's.
 constexpr int wall_index(int wall) { return -1 - wall; }
 
 /// Two grains that push on each other, in however many points.
-struct GrainPair {
+template <int Dim>
+struct GrainPairOf {
   int a = 0, b = 0;  ///< grains a < b, or a wall b < 0
   int points = 0;
-  double normal_force = 0;  ///< f_n = sum over the points of f . n [N/m], >= 0 in compression
-  Vec<2> force;             ///< of a on b [N/m]
-  Vec<2> normal;            ///< unit, from a to b: mean over the points, weighted by their normal force
-  Vec<2> position;          ///< mean over the points, weighted alike [m]
+  double normal_force = 0;  ///< f_n = sum over the points of f . n [N/m in the plane], >= 0 in compression
+  Vec<Dim> force;           ///< of a on b [N/m in the plane]
+  Vec<Dim> normal;          ///< unit, from a to b: mean over the points, weighted by their normal force
+  Vec<Dim> position;        ///< mean over the points, weighted alike [m]
   double length = 0;        ///< of the contact, sum over its points [m]
-  Vec<2> image{};           ///< as of the points
+  Vec<Dim> image{};         ///< as of the points
 };
+using GrainPair = GrainPairOf<2>;
 
 /// The points of each pair of bodies taken together, ordered by (a, b); points without normal force (f . n <=
 /// 0) are left out. Pairs of grains first, those with walls (b < 0) in `walls`.
-struct ContactNetwork {
+template <int Dim>
+struct ContactNetworkOf {
   int grains = 0;
-  std::vector<GrainPair> pairs, walls;
+  std::vector<GrainPairOf<Dim>> pairs, walls;
 };
-ContactNetwork contact_network(std::span<const ContactPoint> points, int grains);
+using ContactNetwork = ContactNetworkOf<2>;
+ContactNetworkOf<2> contact_network(std::span<const ContactPointOf<2>> points, int grains);
+ContactNetworkOf<3> contact_network(std::span<const ContactPointOf<3>> points, int grains);
 
 /// How many neighbours grains have; walls are none.
 struct Coordination {
@@ -50,11 +57,12 @@ struct Coordination {
   double z_with_walls = 0;   ///< 2 (N_pairs + N_wall_pairs)/N_grains: 4 where frictionless disks jam in a box
 };
 
-/// Rattlers have fewer than two contacts, walls among them here, with grains that are no rattlers: they are
-/// taken out again and again until none is left. Walls hold a grain but do not count in Z, but in
-/// z_with_walls. The backbone is what remains when grains with fewer than three contacts are taken out in the
-/// same way: two frictionless contacts hold a disk only where they lie opposite each other.
-Coordination coordination(const ContactNetwork& network);
+/// Rattlers have fewer than two contacts (three in space), walls among them here, with grains that are no
+/// rattlers: they are taken out again and again until none is left. Walls hold a grain but do not count in Z,
+/// but in z_with_walls. The backbone is what remains when grains with fewer than three contacts (four) are
+/// taken out in the same way: two frictionless contacts hold a disk only where they lie opposite each other.
+Coordination coordination(const ContactNetworkOf<2>& network);
+Coordination coordination(const ContactNetworkOf<3>& network);
 
 /// Mean number of sides of the polygons that squeezed grains become: neighbours, walls among them, along
 /// which a grain touches for at least `least_share` of its perimeter [m].

@@ -24,9 +24,11 @@ struct Observation {
   double time = 0;  ///< [s]
   double strain = 0;
   int leg = 0;
-  double height = 0, width = 0;            ///< of the box, or the grain's width [m]
-  std::vector<double> wall_force;          ///< outwards, by BoxWall, mean since the last row [N/m]
-  std::optional<double> shear;             ///< gamma of a periodic cell
+  double height = 0, width = 0;    ///< of the box, or the grain's width [m]
+  int dimension = 2;               ///< in space forces are in N, energies in J
+  double face = 0, side_face = 0;  ///< in space: what bottom and top, and each side wall press on [m^2]
+  std::vector<double> wall_force;  ///< outwards, by BoxWall, mean since the last row [N/m in the plane]
+  std::optional<double> shear;     ///< gamma of a periodic cell
   std::optional<PackingMeasures> packing;  ///< of a closed box
   Energies energies;
   Numbers numbers;  ///< of the model alone

@@ -3,9 +3,32 @@
 namespace softgrain {
 namespace {
 
-void add_outer(Mat<2>& sum, double scale, const Vec<2>& a, const Vec<2>& b) {
-  for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < 2; ++j) sum(i, j) += scale * a[i] * b[j];
+template <int Dim>
+void add_outer(Mat<Dim>& sum, double scale, const Vec<Dim>& a, const Vec<Dim>& b) {
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) sum(i, j) += scale * a[i] * b[j];
+}
+
+template <int Dim>
+Mat<Dim> stress_of_contacts(std::span<const ContactPointOf<Dim>> contacts, std::span<const Vec<Dim>> centre,
+                            double area) {
+  Mat<Dim> sigma;
+  for (const auto& c : contacts)
+    add_outer(sigma, 1 / area, c.force, (c.b < 0 ? c.position : centre[c.b] + c.image) - centre[c.a]);
+  return sigma;
+}
+
+template <int Dim>
+Mat<Dim> stress_of_motion(std::span<const double> mass, std::span<const Vec<Dim>> velocity, double area) {
+  Vec<Dim> momentum;
+  double total = 0;
+  for (std::size_t i = 0; i < mass.size(); ++i) momentum += mass[i] * velocity[i], total += mass[i];
+  Mat<Dim> sigma;
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    const Vec<Dim> v = velocity[i] - (1 / total) * momentum;
+    add_outer(sigma, mass[i] / area, v, v);
+  }
+  return sigma;
 }
 
 }  // namespace
@@ -20,22 +43,18 @@ std::vector<double> virial_pressure(std::span<const BranchForce> forces, std::sp
 }
 
 Mat<2> contact_stress(std::span<const ContactPoint> contacts, std::span<const Vec<2>> centre, double area) {
-  Mat<2> sigma;
-  for (const ContactPoint& c : contacts)
-    add_outer(sigma, 1 / area, c.force, (c.b < 0 ? c.position : centre[c.b] + c.image) - centre[c.a]);
-  return sigma;
+  return stress_of_contacts(contacts, centre, area);
+}
+Mat<3> contact_stress(std::span<const ContactPointOf<3>> contacts, std::span<const Vec<3>> centre,
+                      double volume) {
+  return stress_of_contacts(contacts, centre, volume);
 }
 
 Mat<2> kinetic_stress(std::span<const double> mass, std::span<const Vec<2>> velocity, double area) {
-  Vec<2> momentum;
-  double total = 0;
-  for (std::size_t i = 0; i < mass.size(); ++i) momentum += mass[i] * velocity[i], total += mass[i];
-  Mat<2> sigma;
-  for (std::size_t i = 0; i < mass.size(); ++i) {
-    const Vec<2> v = velocity[i] - (1 / total) * momentum;
-    add_outer(sigma, mass[i] / area, v, v);
-  }
-  return sigma;
+  return stress_of_motion(mass, velocity, area);
+}
+Mat<3> kinetic_stress(std::span<const double> mass, std::span<const Vec<3>> velocity, double volume) {
+  return stress_of_motion(mass, velocity, volume);
 }
 
 }  // namespace softgrain

@@ -26,9 +26,12 @@ std::vector<double> virial_pressure(std::span<const BranchForce> forces, std::sp
 /// across the edge of a periodic cell), or to the point of contact with a wall. At rest it is the stress on
 /// the walls.
 Mat<2> contact_stress(std::span<const ContactPoint> contacts, std::span<const Vec<2>> centre, double area);
+Mat<3> contact_stress(std::span<const ContactPointOf<3>> contacts, std::span<const Vec<3>> centre,
+                      double volume);
 
 /// Stress of the motion [Pa], compression positive: (1/V) sum m (v - v_mean) (x) (v - v_mean), for any bodies
 /// with masses [kg/m] and velocities [m/s].
 Mat<2> kinetic_stress(std::span<const double> mass, std::span<const Vec<2>> velocity, double area);
+Mat<3> kinetic_stress(std::span<const double> mass, std::span<const Vec<3>> velocity, double volume);
 
 }  // namespace softgrain

@@ -19,14 +19,6 @@ Vec<3> turning(const Vec<3>& n, const Vec<3>& impulse) { return cross(n, impulse
 
 }  // namespace
 
-std::array<Vec<3>, 2> tangents(const Vec<3>& n) {
-  // Duff et al. 2017: continuous but at n_z = 0
-  const double sign = std::copysign(1.0, n[2]);
-  const double a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
-  return {Vec<3>{1 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]},
-          Vec<3>{b, sign + n[1] * n[1] * a, -n[1]}};
-}
-
 template <int Dim>
 void signorini_offset(const RigidContacts<Dim>& contacts, std::span<const Vec<Dim>> velocity_start,
                       const ContactLaw& law, double dt, std::vector<double>& offset) {

@@ -6,6 +6,7 @@
 #include "softgrain/contact/law.hpp"
 #include "softgrain/contact/pushed_bodies.hpp"
 #include "softgrain/contact/solver_options.hpp"
+#include "softgrain/contact/tangents.hpp"
 #include "softgrain/rigid/activation.hpp"
 #include "softgrain/rigid/contacts.hpp"
 #include "softgrain/rigid/particles.hpp"
@@ -18,10 +19,6 @@ struct ContactLaw {
   double push_out = 0.1;   ///< beta in [0, 1]: share of an existing overlap that a step removes
   Activation activation = Activation::anticipated;
 };
-
-/// Unit tangents of a contact with normal n: t = e_z x n in the plane; two in space.
-inline std::array<Vec<2>, 1> tangents(const Vec<2>& n) { return {perpendicular(n)}; }
-std::array<Vec<3>, 2> tangents(const Vec<3>& n);
 
 /// Offset of a contact that does not exist in this step [m/s]: so large that no impulse ever answers it.
 inline constexpr double inactive_offset = 1e30;

@@ -11,11 +11,12 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/geometry/images.hpp"
 #include "softgrain/math/random.hpp"
+#include "softgrain/math/random_turn.hpp"
 
 namespace softgrain {
 namespace {
 
-enum Stream : std::uint32_t { diameters, places, angles };
+enum Stream : std::uint32_t { diameters, places, angles, turns };
 
 /// Shares of the clearance that are tried, one after the other.
 constexpr std::array clearance_shares{1.0, 0.5, 0.25};
@@ -26,21 +27,23 @@ constexpr double cell_over_grain = 2.5;
 /// Diameters are drawn anew up to so often: few grains of some sizes find no places where others do.
 constexpr int most_draws = 60;
 
-PeriodicCell<2> cell_of(const BoxSample& sample) {
-  PeriodicCell<2> cell{.repeats = sample.repeats};
-  if (sample.repeats[0]) cell.edges(0, 0) = sample.width;
-  if (sample.repeats[1]) cell.edges(1, 1) = sample.height;
+template <int Dim>
+PeriodicCell<Dim> cell_of(const BoxSampleOf<Dim>& sample) {
+  PeriodicCell<Dim> cell{.repeats = sample.repeats};
+  for (int k = 0; k < Dim; ++k)
+    if (sample.repeats[static_cast<std::size_t>(k)]) cell.edges(k, k) = sample.size()[k];
   return cell;
 }
 
 /// Pushes grains out of the walls and out of each other once; returns the largest overlap met [m].
-double push_apart(BoxSample& sample, double clearance, double widest) {
+template <int Dim>
+double push_apart(BoxSampleOf<Dim>& sample, double clearance, double widest) {
   double worst = 0;
-  std::vector<Vec<2>> centres;
-  const Vec<2> size{sample.width, sample.height};
-  for (PlacedGrain& grain : sample.grains) {
+  std::vector<Vec<Dim>> centres;
+  const Vec<Dim> size = sample.size();
+  for (PlacedGrainOf<Dim>& grain : sample.grains) {
     const double reach = (1 + clearance) * grain.radius;
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < Dim; ++k) {
       if (sample.repeats[k]) continue;
       const double inside = std::clamp(grain.centre[k], reach, size[k] - reach);
       worst = std::max(worst, std::abs(inside - grain.centre[k]));
@@ -49,16 +52,16 @@ double push_apart(BoxSample& sample, double clearance, double widest) {
     centres.push_back(grain.centre);
   }
   const double reach = 2 * (1 + clearance) * widest;
-  for_each_close_pair<2>(
-      centres, cell_of(sample), reach, [&](int i, int j, const Vec<2>& apart, const auto&) {
-        PlacedGrain &a = sample.grains[i], &b = sample.grains[j];
+  for_each_close_pair<Dim>(
+      centres, cell_of(sample), reach, [&](int i, int j, const Vec<Dim>& apart, const auto&) {
+        PlacedGrainOf<Dim>&a = sample.grains[i], &b = sample.grains[j];
         const bool repeats = sample.repeats[0] || sample.repeats[1];  // others have moved on since
-        const Vec<2> d = repeats ? apart : b.centre - a.centre;
+        const Vec<Dim> d = repeats ? apart : b.centre - a.centre;
         const double distance = norm(d), overlap = (1 + clearance) * (a.radius + b.radius) - distance;
         if (!(overlap > 0)) return;
         worst = std::max(worst, overlap);
         // two in one corner: apart in any direction
-        const Vec<2> push = distance > 0 ? (0.3 * overlap / distance) * d : Vec<2>{0.3 * overlap, 0};
+        const Vec<Dim> push = distance > 0 ? (0.3 * overlap / distance) * d : Vec<Dim>{0.3 * overlap};
         a.centre -= push;
         b.centre += push;
       });
@@ -86,9 +89,10 @@ double greatest_diameter(const BoxSampleOptions& options) {
 }
 
 /// The box and its grains without their places: the draw-th diameters.
-BoxSample drawn(const BoxSampleOptions& options, int draw) {
-  BoxSample sample;
-  double area = 0;
+template <int Dim>
+BoxSampleOf<Dim> drawn(const BoxSampleOptions& options, int draw) {
+  BoxSampleOf<Dim> sample;
+  double area = 0;  // volume in space
   const std::uint64_t first = static_cast<std::uint64_t>(draw) * options.grains;
   for (int kind = 0; kind < static_cast<int>(options.kinds.size()); ++kind) {
     const auto& [grains, sizes] = options.kinds[kind];
@@ -96,33 +100,46 @@ BoxSample drawn(const BoxSampleOptions& options, int draw) {
     for (const double diameter :
          draw_diameters(sizes, grains, options.seed, Stream::diameters, first + begin)) {
       const std::uint64_t i = sample.grains.size();
-      sample.grains.push_back(
-          {.centre = {},
-           .radius = diameter / 2,
-           .angle = 2 * std::numbers::pi * random_uniform(options.seed, Stream::angles, i),
-           .kind = kind});
-      area += std::numbers::pi * diameter * diameter / 4;
+      PlacedGrainOf<Dim> grain{.centre = {}, .radius = diameter / 2, .kind = kind};
+      if constexpr (Dim == 2) {
+        grain.angle = 2 * std::numbers::pi * random_uniform(options.seed, Stream::angles, i);
+        area += std::numbers::pi * diameter * diameter / 4;
+      } else {
+        grain.angle = random_turn(options.seed, Stream::turns, i);
+        area += std::numbers::pi * diameter * diameter * diameter / 6;
+      }
+      sample.grains.push_back(grain);
     }
   }
-  const double side = std::sqrt(area / options.packing_fraction);
-  sample.repeats = options.repeats;
-  sample.width = side * std::sqrt(options.aspect);
-  sample.height = side / std::sqrt(options.aspect);
+  if constexpr (Dim == 2) {
+    const double side = std::sqrt(area / options.packing_fraction);
+    sample.repeats = options.repeats;
+    sample.width = side * std::sqrt(options.aspect);
+    sample.height = side / std::sqrt(options.aspect);
+  } else {
+    sample.height = std::cbrt(area / options.packing_fraction / (options.aspect * options.aspect));
+    sample.width = options.aspect * sample.height;
+  }
   return sample;
 }
 
-bool has_room(const BoxSample& sample, double clearance) {
+template <int Dim>
+bool has_room(const BoxSampleOf<Dim>& sample, double clearance) {
   const double least = std::min(sample.width, sample.height);
   return std::all_of(sample.grains.begin(), sample.grains.end(),
-                     [&](const PlacedGrain& grain) { return 2 * (1 + clearance) * grain.radius <= least; });
+                     [&](const auto& grain) { return 2 * (1 + clearance) * grain.radius <= least; });
 }
 
 /// Uniform places, the start-th ones, from which overlaps are pushed out. True if none is left.
-bool place(BoxSample& sample, const BoxSampleOptions& options, double clearance, int start, int most_passes) {
+template <int Dim>
+bool place(BoxSampleOf<Dim>& sample, const BoxSampleOptions& options, double clearance, int start,
+           int most_passes) {
+  const Vec<Dim> size = sample.size();
   for (int i = 0; i < options.grains; ++i) {
-    const std::uint64_t number = 2 * (i + static_cast<std::uint64_t>(start) * options.grains);
-    sample.grains[i].centre = {sample.width * random_uniform(options.seed, Stream::places, number),
-                               sample.height * random_uniform(options.seed, Stream::places, number + 1)};
+    const std::uint64_t number = Dim * (i + static_cast<std::uint64_t>(start) * options.grains);
+    for (int k = 0; k < Dim; ++k)
+      sample.grains[i].centre[k] =
+          size[k] * random_uniform(options.seed, Stream::places, number + static_cast<std::uint64_t>(k));
   }
   const double tolerance = 1e-3 * clearance * least_diameter(options);
   for (int pass = 0; pass < most_passes; ++pass)
@@ -131,13 +148,14 @@ bool place(BoxSample& sample, const BoxSampleOptions& options, double clearance,
 }
 
 /// Other places, less clearance, other diameters, until no grain overlaps; nothing if that does not come.
-std::optional<BoxSample> search(const BoxSampleOptions& options, std::span<const double> shares,
-                                int most_starts) {
+template <int Dim>
+std::optional<BoxSampleOf<Dim>> search(const BoxSampleOptions& options, std::span<const double> shares,
+                                       int most_starts) {
   const int starts = std::clamp(4000 / options.grains, 2, most_starts);
   const int passes = std::min(200 * options.grains, 5000);
   const int draws = std::clamp(300 / options.grains, 1, most_draws);
   for (int draw = 0; draw < draws; ++draw) {
-    BoxSample sample = drawn(options, draw);
+    BoxSampleOf<Dim> sample = drawn<Dim>(options, draw);
     for (const double share : shares) {
       const double clearance = share * options.clearance;
       if (!has_room(sample, clearance)) continue;
@@ -158,37 +176,67 @@ void check(const BoxSampleOptions& options) {
 
 }  // namespace
 
-BoxSample sample_box(const BoxSampleOptions& given) {
-  const BoxSampleOptions options = with_kinds(given);
-  check(options);
-  BoxSample sample = drawn(options, 0);
-  constexpr int most_passes = 100000;
-  if (has_room(sample, options.clearance) && place(sample, options, options.clearance, 0, most_passes))
-    return sample;
-  if (std::optional<BoxSample> found = search(options, clearance_shares, 40)) return *found;
-  throw UsageError(fmt::format(
-      "sample.packing_fraction = {}: could not place sample.grains = {} without overlap in a box of "
-      "aspect {}; the largest fraction found for them is {:.2f}: use that or less{}",
-      options.packing_fraction, options.grains, options.aspect, largest_packing_fraction(options),
-      options.grains < 50 ? ", or more grains" : ""));
-}
+namespace {
 
-double largest_packing_fraction(const BoxSampleOptions& given) {
-  const BoxSampleOptions options = with_kinds(given);
-  check(options);
+template <int Dim>
+double largest_fraction(const BoxSampleOptions& options) {
   int low = 0, high = static_cast<int>(std::ceil(100 * options.packing_fraction));  // per cent
   while (high - low > 1) {
     const int middle = (low + high) / 2;
     BoxSampleOptions some = options;
     some.packing_fraction = 0.01 * middle;
-    (search(some, std::span(clearance_shares).last(1), 5) ? low : high) = middle;
+    (search<Dim>(some, std::span(clearance_shares).last(1), 5) ? low : high) = middle;
   }
   return 0.01 * low;
+}
+
+template <int Dim>
+BoxSampleOf<Dim> sampled(const BoxSampleOptions& given) {
+  const BoxSampleOptions options = with_kinds(given);
+  check(options);
+  BoxSampleOf<Dim> sample = drawn<Dim>(options, 0);
+  constexpr int most_passes = 100000;
+  if (has_room(sample, options.clearance) && place(sample, options, options.clearance, 0, most_passes))
+    return sample;
+  if (auto found = search<Dim>(options, clearance_shares, 40)) return *found;
+  throw UsageError(fmt::format(
+      "sample.packing_fraction = {}: could not place sample.grains = {} without overlap in a box of "
+      "aspect {}; the largest fraction found for them is {:.2f}: use that or less{}",
+      options.packing_fraction, options.grains, options.aspect, largest_fraction<Dim>(options),
+      options.grains < 50 ? ", or more grains" : ""));
+}
+
+}  // namespace
+
+BoxSample sample_box(const BoxSampleOptions& given) { return sampled<2>(given); }
+BoxSampleOf<3> sample_solid_box(const BoxSampleOptions& given) { return sampled<3>(given); }
+
+double largest_packing_fraction(const BoxSampleOptions& given) {
+  const BoxSampleOptions options = with_kinds(given);
+  check(options);
+  return largest_fraction<2>(options);
 }
 
 Box<2> walls_at(double low, double high) {
   return Box<2>({{.point = {0, low}, .normal = {0, 1}, .velocity = {}},
                  {.point = {0, high}, .normal = {0, -1}, .velocity = {}}});
+}
+
+Box<3> solid_walls_at(double low, double high) {
+  return Box<3>({{.point = {0, 0, low}, .normal = {0, 0, 1}, .velocity = {}},
+                 {.point = {0, 0, high}, .normal = {0, 0, -1}, .velocity = {}}});
+}
+
+Box<3> box_of(const BoxSampleOf<3>& sample) {
+  std::vector<Wall<3>> walls;
+  for (int axis = 2; axis >= 0; --axis) {
+    Vec<3> normal, far;
+    normal[axis] = 1;
+    far[axis] = sample.size()[axis];
+    walls.push_back({.point = {}, .normal = normal, .velocity = {}});
+    walls.push_back({.point = far, .normal = Vec<3>{} - normal, .velocity = {}});
+  }
+  return Box<3>(std::move(walls));
 }
 
 Box<2> box_of(const BoxSample& sample) {

@@ -11,11 +11,19 @@
 namespace softgrain {
 
 /// A box with corner (0, 0).
-struct BoxSample {
-  double width = 0, height = 0;   ///< [m]
-  std::array<bool, 2> repeats{};  ///< along x, y; else there are walls
-  std::vector<PlacedGrain> grains;
+template <int Dim>
+struct BoxSampleOf {
+  double width = 0, height = 0;     ///< [m]; in space the base is a square of that width
+  std::array<bool, Dim> repeats{};  ///< along x, y; else there are walls
+  std::vector<PlacedGrainOf<Dim>> grains;
+
+  Vec<Dim> size() const {
+    Vec<Dim> lengths;
+    for (int k = 0; k < Dim; ++k) lengths[k] = k == Dim - 1 ? height : width;
+    return lengths;
+  }
 };
+using BoxSample = BoxSampleOf<2>;
 
 /// So many grains of a kind.
 struct GrainsOfKind {
@@ -27,7 +35,7 @@ struct BoxSampleOptions {
   int grains = 300;
   DiameterLaw sizes{};
   std::vector<GrainsOfKind> kinds{};  ///< instead of those two: one kind after the other, their places mixed
-  double packing_fraction = 0.7;      ///< sum pi R^2 over the box's area
+  double packing_fraction = 0.7;      ///< of the undeformed grains in the box
   double aspect = 1;                  ///< width over height of the box
   std::array<bool, 2> repeats{};      ///< along x, y
   double clearance = 0.02;  ///< free distance round each grain, over its radius, where there is room for it
@@ -40,6 +48,8 @@ struct BoxSampleOptions {
 /// is found, if none of them works: few grains do not fill 0.7 of every box (two equal ones fill 0.54 of a
 /// square).
 BoxSample sample_box(const BoxSampleOptions& given);
+/// The same of spheres, turned at random, between six walls.
+BoxSampleOf<3> sample_solid_box(const BoxSampleOptions& given);
 
 /// The largest packing fraction, in hundredths, at which sample_box is sure to find places for these grains,
 /// up to that of the options. O(grains), and less than a second for 300.
@@ -48,7 +58,9 @@ double largest_packing_fraction(const BoxSampleOptions& given);
 /// A box with its corner at (0, 0), with walls or a cell that repeats; walls below and above one grain [m].
 /// Raises UsageError for a cell that a grain might meet twice, and for one that repeats along y alone.
 Box<2> box_of(const BoxSample& sample);
+Box<3> box_of(const BoxSampleOf<3>& sample);
 Box<2> walls_at(double low, double high);
+Box<3> solid_walls_at(double low, double high);
 
 /// Placed grains may overlap by this share of the smaller radius, and reach that far beyond a wall.
 inline constexpr double largest_placed_overlap = 0.01;

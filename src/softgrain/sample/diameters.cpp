@@ -34,10 +34,13 @@ struct CutNormal {
   }
 };
 
-/// Mean of d^power, power 1 or 2.
+/// Mean of d^power, power 1, 2 or 3.
 double moment(const DiameterLaw& law, int power) {
   const double a = law.smallest, b = law.largest;
-  if (law.law == SizeLaw::uniform) return power == 1 ? (a + b) / 2 : (a * a + a * b + b * b) / 3;
+  if (law.law == SizeLaw::uniform)
+    return power == 1   ? (a + b) / 2
+           : power == 2 ? (a * a + a * b + b * b) / 3
+                        : (a + b) * (a * a + b * b) / 4;
   if (law.law == SizeLaw::lognormal) {
     if (a == b) return std::pow(a, power);
     // E d^k = median^k e^(k^2 sigma^2/2) [Phi(high - k sigma) - Phi(low - k sigma)] / [Phi(high) - Phi(low)]
@@ -120,5 +123,6 @@ std::vector<double> draw_diameters(const DiameterLaw& law, int grains, std::uint
 
 double mean_diameter(const DiameterLaw& law) { return moment(law, 1); }
 double mean_square_diameter(const DiameterLaw& law) { return moment(law, 2); }
+double mean_cube_diameter(const DiameterLaw& law) { return moment(law, 3); }
 
 }  // namespace softgrain

@@ -42,5 +42,7 @@ std::vector<int> counts_in_proportion(const std::vector<double>& proportions, in
 /// Mean of d [m] and of d^2 [m^2].
 double mean_diameter(const DiameterLaw& law);
 double mean_square_diameter(const DiameterLaw& law);
+/// Of d^3 [m^3].
+double mean_cube_diameter(const DiameterLaw& law);
 
 }  // namespace softgrain

@@ -9,16 +9,21 @@ namespace {
 /// Contacts of a strip, about: enough that a thread has something to do.
 constexpr int contacts_per_strip = 64;
 
+Vec<2> image_of(const OutlineContact& contact) { return contact.image; }
+Vec<3> image_of(const SurfaceContact&) { return {}; }
+
 }  // namespace
 
-void ContactStrips::sort(std::span<const OutlineContact> contacts, const OutlineState& outline) {
+template <int Dim>
+void ContactStrips::sort(Contacts<Dim> contacts, const OutlineStateOf<Dim>& outline) {
   const int n = static_cast<int>(contacts.size());
   const bool ring = outline.cell.repeats[0];  // the last strip is then next to the first
-  const Mat<2> to_share = inverse(outline.cell.edges);
-  const auto along = [&](const Vec<2>& x) { return ring ? (to_share * x)[0] : x[0]; };
+  const Mat<Dim> to_share = inverse(outline.cell.edges);
+  const auto along = [&](const Vec<Dim>& x) { return ring ? (to_share * x)[0] : x[0]; };
   double low = 0, high = 0, reach = 0;  // of a contact's vertices from its slave
   for (int c = 0; c < n; ++c) {
-    const double x = along(outline.position[contacts[c].vertex]), image = ring ? along(contacts[c].image) : 0;
+    const double x = along(outline.position[contacts[c].vertex]),
+                 image = ring ? along(image_of(contacts[c])) : 0;
     low = c == 0 ? x : std::min(low, x);
     high = c == 0 ? x : std::max(high, x);
     contacts[c].for_each_vertex([&](int vertex, double) {
@@ -47,5 +52,8 @@ void ContactStrips::sort(std::span<const OutlineContact> contacts, const Outline
   std::vector<int> next(begin.begin(), begin.end() - 1);
   for (int c = 0; c < n; ++c) order[place[c] = next[strip_[c]]++] = c;
 }
+
+template void ContactStrips::sort(Contacts<2>, const OutlineStateOf<2>&);
+template void ContactStrips::sort(Contacts<3>, const OutlineStateOf<3>&);
 
 }  // namespace softgrain

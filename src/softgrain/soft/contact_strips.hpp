@@ -2,16 +2,17 @@
 #include <span>
 #include <vector>
 
-#include "softgrain/soft/outline_contacts.hpp"
+#include "softgrain/soft/contact_of.hpp"
 
 namespace softgrain {
 
-/// Contacts in upright strips, or strips along the second lattice vector of a periodic cell, so wide that
-/// contacts of two strips that are not neighbours share no vertex: all even strips may be worked on at once,
-/// then all odd ones, with the same bits on any number of threads.
+/// Contacts in upright strips (slabs in space), or strips along the second lattice vector of a periodic cell,
+/// so wide that contacts of two strips that are not neighbours share no vertex: all even strips may be worked
+/// on at once, then all odd ones, with the same bits on any number of threads.
 struct ContactStrips {
   /// At the end of the step. Keeps the memory of an earlier call.
-  void sort(std::span<const OutlineContact> contacts, const OutlineState& outline);
+  template <int Dim>
+  void sort(Contacts<Dim> contacts, const OutlineStateOf<Dim>& outline);
 
   int count() const { return static_cast<int>(begin.size()) - 1; }
 

@@ -4,14 +4,15 @@
 
 #include "softgrain/model/soft_step_report.hpp"
 #include "softgrain/model/work_budget.hpp"
-#include "softgrain/soft/outline_contacts.hpp"
+#include "softgrain/soft/contact_of.hpp"
 
 namespace softgrain {
 
 /// Adds what contacts did in a step that moved the outlines from state.start to state.position: the work that
 /// they took, -sum of p . u and of it the share of friction, the work of the walls and of the cell, and each
-/// wall's impulse, from the grains on it [N s/m].
-void add_contact_work(std::span<const OutlineContact> contacts, std::span<const Vec<2>> impulse,
-                      const OutlineState& state, WorkBudget& work, std::span<Vec<2>> wall_impulse);
+/// wall's impulse, from the grains on it [N s/m in the plane].
+template <int Dim>
+void add_contact_work(Contacts<Dim> contacts, Impulses<Dim> impulse, const OutlineStateOf<Dim>& state,
+                      WorkBudget& work, std::type_identity_t<std::span<Vec<Dim>>> wall_impulse);
 
 }  // namespace softgrain

@@ -45,10 +45,10 @@ void visit_stable_step(StableStep& stable, StateVisitor& visit) {
 }  // namespace
 
 template <class Dynamics>
-StepReport ElasticGrains<Dynamics>::step(Box<2>& box, double dt) {
+StepReport ElasticGrains<Dynamics>::step(Box<Dim>& box, double dt) {
   const BoxLoan loan(box, dynamics_.box);
   const SoftStepReport soft = dynamics_.step(dt);
-  if constexpr (std::is_same_v<Dynamics, ExplicitDynamics>)
+  if constexpr (!std::is_same_v<Dynamics, ImplicitDynamics>)
     if (const int grain = dynamics_.grains.runaway_grain(dynamics_.impulse_time); grain >= 0)
       throw NumericalError(fmt::format(
           "grain {} moves by more than half its radius in a step; use a smaller time step", grain));
@@ -74,10 +74,10 @@ std::vector<double> ElasticGrains<Dynamics>::radii() const {
 
 template <class Dynamics>
 std::pair<double, double> ElasticGrains<Dynamics>::extent() const {
-  std::vector<Vec<2>> outline;
+  std::vector<Vec<Dim>> outline;
   dynamics_.grains.gather_outline(outline);
   double least = std::numeric_limits<double>::infinity(), largest = -least;
-  for (const Vec<2>& x : outline) least = std::min(least, x[0]), largest = std::max(largest, x[0]);
+  for (const Vec<Dim>& x : outline) least = std::min(least, x[0]), largest = std::max(largest, x[0]);
   return {least, largest};
 }
 
@@ -94,32 +94,39 @@ Energies ElasticGrains<Dynamics>::energies() const {
 }
 
 template <class Dynamics>
-Numbers ElasticGrains<Dynamics>::numbers(const Box<2>& box) const {
-  const SoftGrains& grains = dynamics_.grains;
+Numbers ElasticGrains<Dynamics>::numbers(const Box<Dim>& box) const {
+  const GrainsOf<Dim>& grains = dynamics_.grains;
   Numbers numbers = elastic_numbers(dynamics_.work, stored_energy(grains));
-  const std::vector<Vec<2>>& impulse = dynamics_.impulse;
+  const std::vector<Vec<Dim>>& impulse = dynamics_.impulse;
   const auto contacts =
-      std::count_if(impulse.begin(), impulse.end(), [](const Vec<2>& p) { return p[0] > 0; });
+      std::count_if(impulse.begin(), impulse.end(), [](const Vec<Dim>& p) { return p[0] > 0; });
   numbers.emplace_back("contacts", contacts);
   if (const double J = least_J(grains); std::isfinite(J)) numbers.emplace_back("least_J", J);
   numbers.emplace_back("iterations", sums_.steps > 0 ? sums_.iterations / sums_.steps : 0);
   numbers.emplace_back("rejected_steps", sums_.rejected);
-  if (grains.has_history()) {
-    const PlasticStrain strain = plastic_strain(grains);
-    numbers.emplace_back("dissipation_plastic", dynamics_.work.flow);
-    numbers.emplace_back("plastic_strain", strain.mean);
-    numbers.emplace_back("plastic_strain_max", strain.largest);
-    numbers.emplace_back("yielding", dynamics_.last_flow.share);
-  }
-  if (!(dynamics_.options.gravity == Vec<2>{})) numbers.emplace_back("gravity_work", dynamics_.work.gravity);
+  if constexpr (Dim == 2)
+    if (grains.has_history()) {
+      const PlasticStrain strain = plastic_strain(grains);
+      numbers.emplace_back("dissipation_plastic", dynamics_.work.flow);
+      numbers.emplace_back("plastic_strain", strain.mean);
+      numbers.emplace_back("plastic_strain_max", strain.largest);
+      numbers.emplace_back("yielding", dynamics_.last_flow.share);
+    }
+  if (!(dynamics_.options.gravity == Vec<Dim>{}))
+    numbers.emplace_back("gravity_work", dynamics_.work.gravity);
   if (!box.closed()) {
-    numbers.emplace_back("area_ratio", outlines().area / grains.undeformed_area());
+    double size = 0;
+    if constexpr (Dim == 2)
+      size = outlines().area;
+    else
+      for (const SurfaceMeasure& of_grain : outlines()) size += of_grain.volume;
+    numbers.emplace_back("area_ratio", size / grains.undeformed_area());
   }
   return numbers;
 }
 
 template <class Dynamics>
-SoftView ElasticGrains<Dynamics>::view() const {
+SoftViewOf<ElasticGrains<Dynamics>::Dim> ElasticGrains<Dynamics>::view() const {
   return {.grains = dynamics_.grains,
           .contacts = dynamics_.contacts,
           .impulse = dynamics_.impulse,
@@ -127,7 +134,7 @@ SoftView ElasticGrains<Dynamics>::view() const {
 }
 
 template <class Dynamics>
-PressBody ElasticGrains<Dynamics>::press_body(const Box<2>& box, int axis, double dt) const {
+PressBody ElasticGrains<Dynamics>::press_body(const Box<Dim>& box, int axis, double dt) const {
   // no wave crosses a box of rigid grains alone: it gets the time of some steps
   constexpr double steps_of_rigid = 10;
   const double length = box.length(axis), wave = dynamics_.grains.fastest_wave();
@@ -158,7 +165,7 @@ void ElasticGrains<Dynamics>::catch_problem() {
   if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>)
     dynamics_.caught.emplace();
   else
-    Model::catch_problem();
+    ModelOf<Dim>::catch_problem();
 }
 
 template <class Dynamics>
@@ -166,7 +173,7 @@ SolvedContactProblem ElasticGrains<Dynamics>::caught_problem(double dt) {
   if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>)
     return *std::exchange(dynamics_.caught, std::nullopt);
   else
-    return Model::caught_problem(dt);
+    return ModelOf<Dim>::caught_problem(dt);
 }
 
 template <class Dynamics>
@@ -190,10 +197,14 @@ void ElasticGrains<Dynamics>::visit(StateVisitor& visit) {
     visit_sub_steps(dynamics_, visit);
   } else {
     visit_stable_step(dynamics_.stable, visit);
+    if (Dim == 3)
+      visit({"until_search", "", Owner::run, Role::start, "sub-steps until contacts are looked for again"},
+            dynamics_.stable.until_search);
   }
 }
 
 template class ElasticGrains<ImplicitDynamics>;
 template class ElasticGrains<ExplicitDynamics>;
+template class ElasticGrains<ExplicitStep<3>>;
 
 }  // namespace softgrain

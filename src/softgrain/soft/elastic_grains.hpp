@@ -11,17 +11,21 @@
 namespace softgrain {
 
 /// Soft grains by the material point method on grids that fit them (the paper's MPM-CD, total Lagrangian).
-/// `Dynamics` is ImplicitDynamics or ExplicitDynamics: both hold the same data.
+/// `Dynamics` is ImplicitDynamics, or ExplicitStep in the plane or in space: all hold the same data.
 template <class Dynamics>
-class ElasticGrains final : public Model {
+class ElasticGrains final : public ModelOf<Dynamics::dimension> {
  public:
+  static constexpr int Dim = Dynamics::dimension;
+
   /// Grains among as many walls as the dynamics were given.
   explicit ElasticGrains(Dynamics dynamics)
       : dynamics_(std::move(dynamics)), walls_(static_cast<int>(dynamics_.box.walls.size())) {}
 
-  std::unique_ptr<Model> copy() const override { return std::make_unique<ElasticGrains>(*this); }
-  StepReport step(Box<2>& box, double dt) override;
-  void follow(const Mat<2>& L) override { dynamics_.work.walls += add_affine_velocity(dynamics_.grains, L); }
+  std::unique_ptr<ModelOf<Dim>> copy() const override { return std::make_unique<ElasticGrains>(*this); }
+  StepReport step(Box<Dim>& box, double dt) override;
+  void follow([[maybe_unused]] const Mat<Dim>& L) override {
+    if constexpr (Dim == 2) dynamics_.work.walls += add_affine_velocity(dynamics_.grains, L);
+  }
   void visit(StateVisitor& visit) override;
   Settings settings() const override;
   void set(const Settings& settings) override;
@@ -29,17 +33,17 @@ class ElasticGrains final : public Model {
 
   double density() const override { return dynamics_.grains.mean_density(); }
   std::vector<double> radii() const override;
-  std::vector<Vec<2>> centres() const override { return centres_of(dynamics_.grains); }
-  Bodies bodies() const override { return nodes_of(dynamics_.grains); }
-  std::vector<ContactPoint> contacts() const override { return contact_points(view()); }
-  Outlines outlines() const override { return outlines_of(dynamics_.grains); }
+  std::vector<Vec<Dim>> centres() const override { return centres_of(dynamics_.grains); }
+  BodiesOf<Dim> bodies() const override { return nodes_of(dynamics_.grains); }
+  std::vector<ContactPointOf<Dim>> contacts() const override { return contact_points(view()); }
+  OutlinesOf<Dim> outlines() const override { return outlines_of(dynamics_.grains); }
   std::pair<double, double> extent() const override;
   Energies energies() const override;
-  Numbers numbers(const Box<2>& box) const override;
-  Scene scene(const Box<2>&) const override { return soft_scene(view()); }
+  Numbers numbers(const Box<Dim>& box) const override;
+  Scene scene(const Box<Dim>&) const override { return soft_scene(view()); }
   std::pair<double, double> reach() const override;
   std::vector<GrainView> grains() const override { return grain_views(dynamics_.grains); }
-  PressBody press_body(const Box<2>& box, int axis, double dt) const override;
+  PressBody press_body(const Box<Dim>& box, int axis, double dt) const override;
   void catch_problem() override;
   SolvedContactProblem caught_problem(double dt) override;
 
@@ -50,7 +54,7 @@ class ElasticGrains final : public Model {
   struct Sums {
     double steps = 0, iterations = 0, rejected = 0;
   };
-  SoftView view() const;
+  SoftViewOf<Dim> view() const;
 
   Dynamics dynamics_;
   int walls_;

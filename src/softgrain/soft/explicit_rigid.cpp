@@ -5,6 +5,7 @@
 namespace softgrain {
 
 /// Where the outlines would be after dt without forces; bodies as contacts find them.
+template <>
 void ExplicitDynamics::fly_rigid(double dt, const GrainBatch& batch) {
   const RigidTwist twist = rigid_twist(grains, batch, batch.position, batch.velocity);
   const RigidMass all = rigid_mass(grains, batch);
@@ -28,6 +29,7 @@ void ExplicitDynamics::fly_rigid(double dt, const GrainBatch& batch) {
 }
 
 /// v_free = v + dt g and what damping changes.
+template <>
 void ExplicitDynamics::kick_rigid(double dt, GrainBatch& batch, BatchStep& step) {
   step.twist = rigid_twist(grains, batch, batch.position, batch.velocity);
   WideVectors kicked = batch.velocity;
@@ -39,6 +41,7 @@ void ExplicitDynamics::kick_rigid(double dt, GrainBatch& batch, BatchStep& step)
 }
 
 /// x_c+ = x_c + dt v_c+, and a turn by dt w+; work as in drift_batch.
+template <>
 void ExplicitDynamics::drift_rigid(double dt, GrainBatch& batch, BatchStep& step) {
   const RigidTwist twist = twist_of_bodies(batch);
   const RigidMass all = rigid_mass(grains, batch);
@@ -64,6 +67,7 @@ void ExplicitDynamics::drift_rigid(double dt, GrainBatch& batch, BatchStep& step
   set_rigid_twist(twist, batch.position, batch.velocity);
 }
 
+template <>
 void ExplicitDynamics::set_bodies(const GrainBatch& batch, const RigidTwist& twist) {
   for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) {
     LumpedBody& body = bodies_.body[body_of_grain_[batch.grain[lane]]];
@@ -72,6 +76,7 @@ void ExplicitDynamics::set_bodies(const GrainBatch& batch, const RigidTwist& twi
   }
 }
 
+template <>
 RigidTwist ExplicitDynamics::twist_of_bodies(const GrainBatch& batch) const {
   RigidTwist twist;
   for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) {

@@ -6,20 +6,12 @@
 #include "softgrain/contact/nlgs.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
-#include "softgrain/soft/contact_work.hpp"
 #include "softgrain/soft/equilibrium.hpp"
 #include "softgrain/soft/pressed_walls.hpp"
-#include "softgrain/soft/wall_couple.hpp"
+#include "softgrain/soft/solid_equilibrium.hpp"
 
 namespace softgrain {
 namespace {
-
-/// Contacts are looked for up to this gap at the end of the free flight, in units of a segment of the
-/// outline: the impulses of a stable step move a vertex by a few hundredths of it.
-constexpr double contact_margin = 0.1;
-
-/// Contacts that a thread takes at once.
-constexpr int contacts_at_once = 256;
 
 /// Sub-steps between two looks at the cells: fewer after a change of the stable step by more than half of
 /// what it lies above the sub-step, more after one by less than an eighth of that.
@@ -32,28 +24,29 @@ constexpr double share_taken = 0.97;
 /// A step that needs more sub-steps than this has crushed cells.
 constexpr double most_sub_steps = 2000;
 
-Vec<2> lane_of(const Vec<2, Wide>& v, int lane) { return {v[0][lane], v[1][lane]}; }
-
 }  // namespace
 
-ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains,
-                                   const ExplicitOptions& explicit_options)
+template <int Dim>
+ExplicitStep<Dim>::ExplicitStep(GrainsOf<Dim> soft_grains, Box<Dim> box_of_grains,
+                                const ExplicitOptionsOf<Dim>& explicit_options)
     : grains(std::move(soft_grains)), box(std::move(box_of_grains)), options(explicit_options) {
   require(grains.size() > 0, "there is no grain");
   require(options.damping >= 0, "damping must be >= 0, got {} 1/s", options.damping);
   friction_by_kind();  // says what is wrong with it
+  if constexpr (Dim == 3)
+    for (int k = 0; k < grains.kinds(); ++k) require_solid(grains.material(k));
   smallest_radius_ = grains.radius(0);
   for (int g = 0; g < grains.size(); ++g) {
     mean_radius_ += grains.radius(g) / grains.size();
     smallest_radius_ = std::min(smallest_radius_, grains.radius(g));
-    const Topology& shape = grains.topology(g);
+    const TopologyOf<Dim>& shape = grains.topology(g);
     body_of_grain_.push_back(shape.rigid() ? static_cast<int>(bodies_.body.size()) : -1);
     if (shape.rigid()) bodies_.body.emplace_back();
     for (int i = shape.grid.outline_begin; i < shape.grid.nodes(); ++i)
       inverse_mass_.push_back(1 / (grains.material(grains.kind(g)).density * shape.node_volume[i] *
-                                   grains.radius(g) * grains.radius(g)));
+                                   grains.radius(g) * grains.radius(g) * (Dim == 3 ? grains.radius(g) : 1)));
   }
-  for (auto* of_vertices :
+  for (std::vector<Vec<Dim>>* of_vertices :
        {&outline_velocity_, &outline_velocity_start_, &outline_.start, &outline_.position})
     of_vertices->resize(grains.outline_size());
   if (!bodies_.body.empty())
@@ -62,7 +55,8 @@ ExplicitDynamics::ExplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains,
   batch_step_.resize(grains.batches.size());
 }
 
-SoftStepReport ExplicitDynamics::step(double dt) {
+template <int Dim>
+SoftStepReport ExplicitStep<Dim>::step(double dt) {
   SoftStepReport report{.converged = true};
   box.impulse.assign(box.walls.size(), {});
   double rest = dt;
@@ -81,11 +75,13 @@ SoftStepReport ExplicitDynamics::step(double dt) {
   return report;
 }
 
-double ExplicitDynamics::sub_steps(double dt) const {
+template <int Dim>
+double ExplicitStep<Dim>::sub_steps(double dt) const {
   return std::max(1.0, std::ceil(dt / (share_taken * stable.longest) * (1 - 1e-12)));
 }
 
-void ExplicitDynamics::look_at_cells(double dt) {
+template <int Dim>
+void ExplicitStep<Dim>::look_at_cells(double dt) {
   const double longest = longest_stable_step(grains, options.damping_share);
   const double change = std::abs(longest - stable.longest);
   stable.longest = longest;
@@ -97,32 +93,22 @@ void ExplicitDynamics::look_at_cells(double dt) {
   stable.until_look = stable.between_looks;
 }
 
-void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
+template <int Dim>
+void ExplicitStep<Dim>::sub_step(double dt, SoftStepReport& report) {
   for (const Press& press : box.presses) box.set_speed(press, press.speed);
   check_wall_motion(box, dt, smallest_radius_);
   damping_ = {options.damping, dt, box};
-  take_back_spin();
-  // contacts where x + dt v will be
-  fly_outline(dt);
-  box.advance(dt);
-  outline_.walls = box.walls;
-  outline_.cell = box.cell;
-  outline_.dt = dt;
-  std::vector<OutlineContact> found = neighbours_.detect(grains, outline_, contact_margin);
-  impulse = carried_impulses(grains, contacts, impulse, found);
-  if (impulse_time > 0 && impulse_time != dt)
-    for (Vec<2>& p : impulse) p *= dt / impulse_time;  // the same force
-  contacts = std::move(found);
-
-  LumpedContacts system(contacts, outline_, outline_velocity_, inverse_mass_, bodies_, lumped_scratch_);
+  if constexpr (Dim == 2) take_back_spin();
+  find_contacts(dt);
+  LumpedSystem<Dim> system(contacts, outline_, outline_velocity_, inverse_mass_, bodies_, lumped_scratch_);
   PushedBodies pressed = pressed_walls(box, contacts, impulse, dt);
   system.push(pressed);
   kick(dt);
-  const std::vector<double> friction = friction_by_kind().of(grains, contacts);
+  const std::vector<double> friction = friction_by_kind().template of<Dim>(grains, contacts);
   system.apply_impulses(impulse);
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
-  const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction, solver);
+  const SolverReport solved = solve_nlgs<Dim>(system, std::span(impulse), friction, solver);
   impulse_time = dt;
   move_presses(box, pressed, dt);
   outline_.walls = box.walls;
@@ -140,39 +126,39 @@ void ExplicitDynamics::sub_step(double dt, SoftStepReport& report) {
   add_overlaps(report);
 }
 
-/// Of grains that frictionless walls alone touch: what they gave in the step before.
-void ExplicitDynamics::take_back_spin() {
-  const std::vector<Wide> alone = grains_on_smooth_walls_alone(grains, contacts, friction_by_kind());
-  if (std::none_of(alone.begin(), alone.end(), [](const Wide& of_batch) { return any(of_batch > 0.0); }))
-    return;
-  grains.gather_outline(outline_.start);
-  work.contacts -= turn_back(grains, alone, contacts, impulse, outline_.start);
-}
-
 /// Where the outlines are, and where they would be after dt without forces.
-void ExplicitDynamics::fly_outline(double dt) {
+template <int Dim>
+void ExplicitStep<Dim>::fly_outline(double dt) {
   parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
-    const GrainBatch& batch = grains.batches[b];
+    const BatchOf<Dim>& batch = grains.batches[b];
     grains.for_each_vertex(batch, [&](int v, int i, int lane) {
       outline_velocity_[v] = outline_velocity_start_[v] = lane_of(batch.velocity[i], lane);
       outline_.start[v] = lane_of(batch.position[i], lane);
       outline_.position[v] = outline_.start[v] + dt * outline_velocity_[v];
     });
-    if (batch.topology->rigid()) fly_rigid(dt, batch);
+    if constexpr (Dim == 2)
+      if (batch.topology->rigid()) fly_rigid(dt, batch);
   });
 }
 
 /// v_free = v + dt M^-1 (f_ext - f_int), and within the grains, where v_free = v+, x+ = x + dt v+.
-void ExplicitDynamics::kick(double dt) {
+template <int Dim>
+void ExplicitStep<Dim>::kick(double dt) {
   std::vector<int> inverted(grains.batches.size(), -1);
   parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
-    thread_local WideVectors force;  // of this batch only: it stays in the processor's cache
-    GrainBatch& batch = grains.batches[b];
-    if (batch.topology->rigid()) return kick_rigid(dt, batch, batch_step_[b]);
+    thread_local WidePlaces<Dim> force;  // of this batch only: it stays in the processor's cache
+    BatchOf<Dim>& batch = grains.batches[b];
+    if constexpr (Dim == 2)
+      if (batch.topology->rigid()) return kick_rigid(dt, batch, batch_step_[b]);
     if (options.damping_share > 0)
       for (std::size_t i = 0; i < batch.position.size(); ++i)
         batch.position[i] += Wide(options.damping_share * dt) * batch.velocity[i];
-    inverted[b] = batch.grain_in(internal_force_and_history(grains, batch, force, dt, batch_step_[b].flow));
+    unsigned lanes = 0;
+    if constexpr (Dim == 2)
+      lanes = internal_force_and_history(grains, batch, force, dt, batch_step_[b].flow);
+    else
+      lanes = internal_force(grains, batch, force);
+    inverted[b] = batch.grain_in(lanes);
     if (inverted[b] >= 0) return;
     kick_batch(dt, force, batch, batch_step_[b]);
     grains.for_each_vertex(
@@ -184,25 +170,29 @@ void ExplicitDynamics::kick(double dt) {
           fmt::format("a material point of grain {} is turned inside out; use a smaller time step", grain));
 }
 
-Vec<2, Wide> ExplicitDynamics::weight(const GrainBatch& batch, int node) const {
+template <int Dim>
+Vec<Dim, Wide> ExplicitStep<Dim>::weight(const BatchOf<Dim>& batch, int node) const {
   const Wide mass = grains.node_mass(batch, node);
-  return {options.gravity[0] * mass, options.gravity[1] * mass};
+  Vec<Dim, Wide> force;
+  for (int d = 0; d < Dim; ++d) force[d] = options.gravity[d] * mass;
+  return force;
 }
 
-void ExplicitDynamics::kick_batch(double dt, const WideVectors& force, GrainBatch& batch,
-                                  BatchStep& step) const {
-  const Topology& topology = *batch.topology;
+template <int Dim>
+void ExplicitStep<Dim>::kick_batch(double dt, const WidePlaces<Dim>& force, BatchOf<Dim>& batch,
+                                   BatchStep& step) const {
+  const TopologyOf<Dim>& topology = *batch.topology;
   const int outline_begin = topology.grid.outline_begin;
   step.force.assign(force.begin() + outline_begin, force.end());
   step.velocity.assign(batch.velocity.begin() + outline_begin, batch.velocity.end());
   step.internal = step.gravity = step.damping = 0.0;
-  const Wide scale = Wide(dt) / (grains.density(batch) * (batch.radius * batch.radius));
+  const Wide scale = Wide(dt) / (grains.density(batch) * body_unit<Dim>(batch.radius));
   for (int i = 0; i < topology.grid.nodes(); ++i) {
-    const Vec<2, Wide> v = batch.velocity[i];
+    const Vec<Dim, Wide> v = batch.velocity[i];
     const Wide rate = scale * Wide(1 / topology.node_volume[i]);
-    for (int d = 0; d < 2; ++d) batch.velocity[i][d] += dt * options.gravity[d] - rate * force[i][d];
+    for (int d = 0; d < Dim; ++d) batch.velocity[i][d] += dt * options.gravity[d] - rate * force[i][d];
     batch.position[i] -= Wide(options.damping_share * dt) * v;
-    Vec<2, Wide> damped{};
+    Vec<Dim, Wide> damped{};
     if (options.damping > 0) batch.velocity[i] += damped = damping_.velocity_change(batch.position[i], v);
     if (i >= outline_begin) continue;
     batch.position[i] += Wide(dt) * batch.velocity[i];
@@ -213,13 +203,14 @@ void ExplicitDynamics::kick_batch(double dt, const WideVectors& force, GrainBatc
 
 /// x+ = x + dt v+ of a batch's outlines. The work over the step is that of a motion by dt (v+ + v)/2, in
 /// which M (v+ - v) does dK.
-void ExplicitDynamics::drift_batch(double dt, GrainBatch& batch, BatchStep& step) const {
+template <int Dim>
+void ExplicitStep<Dim>::drift_batch(double dt, BatchOf<Dim>& batch, BatchStep& step) const {
   grains.for_each_vertex(batch, [&](int v, int i, int lane) {
-    for (int d = 0; d < 2; ++d) batch.velocity[i][d].set(lane, outline_velocity_[v][d]);
+    for (int d = 0; d < Dim; ++d) batch.velocity[i][d].set(lane, outline_velocity_[v][d]);
   });
-  const ReferenceGrid& grid = batch.topology->grid;
+  const auto& grid = batch.topology->grid;
   for (int i = grid.outline_begin, k = 0; i < grid.nodes(); ++i, ++k) {
-    const Vec<2, Wide> twice = step.velocity[k] + batch.velocity[i];
+    const Vec<Dim, Wide> twice = step.velocity[k] + batch.velocity[i];
     if (options.damping > 0)
       step.damping -= grains.node_mass(batch, i) *
                       (0.5 * dot(damping_.velocity_change(batch.position[i], step.velocity[k]), twice));
@@ -229,14 +220,14 @@ void ExplicitDynamics::drift_batch(double dt, GrainBatch& batch, BatchStep& step
 }
 
 /// The outlines at the end of the step.
-void ExplicitDynamics::drift_outline(double dt) {
+template <int Dim>
+void ExplicitStep<Dim>::drift_outline(double dt) {
   parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
-    GrainBatch& batch = grains.batches[b];
+    BatchOf<Dim>& batch = grains.batches[b];
     BatchStep& step = batch_step_[b];
-    if (batch.topology->rigid())
-      drift_rigid(dt, batch, step);
-    else
-      drift_batch(dt, batch, step);
+    if (!batch.topology->rigid()) drift_batch(dt, batch, step);
+    if constexpr (Dim == 2)
+      if (batch.topology->rigid()) drift_rigid(dt, batch, step);
     grains.for_each_vertex(
         batch, [&](int v, int i, int lane) { outline_.position[v] = lane_of(batch.position[i], lane); });
   });
@@ -248,51 +239,17 @@ void ExplicitDynamics::drift_outline(double dt) {
     }
 }
 
-void ExplicitDynamics::add_flow() {
-  std::vector<FlowOfStep> flows;
-  for (const BatchStep& step : batch_step_) flows.push_back(step.flow);
-  last_flow = sum_of(grains, flows);
-  work.flow += last_flow.dissipated;
-}
-
-/// Of the contacts that carry impulse, over the smallest radius.
-void ExplicitDynamics::add_overlaps(SoftStepReport& report) const {
-  const int count = static_cast<int>(contacts.size());
-  struct Depths {
-    double deepest = 0, sum = 0;
-    int carrying = 0;
-  };
-  std::vector<Depths> depths((count + contacts_at_once - 1) / contacts_at_once);
-  parallel_for(static_cast<int>(depths.size()), [&](int k) {
-    for (int c = k * contacts_at_once; c < std::min(count, (k + 1) * contacts_at_once); ++c) {
-      if (impulse[c][0] == 0) continue;
-      const double depth = std::max(0.0, -gap_now(contacts[c], outline_));
-      depths[k].deepest = std::max(depths[k].deepest, depth);
-      depths[k].sum += depth;
-      ++depths[k].carrying;
-    }
-  });
-  Depths all;
-  for (const Depths& part : depths) {
-    all.deepest = std::max(all.deepest, part.deepest);
-    all.sum += part.sum;
-    all.carrying += part.carrying;
+template <int Dim>
+void ExplicitStep<Dim>::add_flow() {
+  if constexpr (Dim == 2) {
+    std::vector<FlowOfStep> flows;
+    for (const BatchStep& step : batch_step_) flows.push_back(step.flow);
+    last_flow = sum_of(grains, flows);
+    work.flow += last_flow.dissipated;
   }
-  report.overlap_max = std::max(report.overlap_max, all.deepest / smallest_radius_);
-  report.overlap_mean = all.carrying > 0 ? all.sum / all.carrying / smallest_radius_ : 0;
 }
 
-void ExplicitDynamics::add_contact_work(double dt) {
-  for (std::size_t v = 0; v < outline_velocity_.size(); ++v)  // moved by (v+ + v)/2 dt
-    outline_.position[v] = outline_.start[v] + dt / 2 * (outline_velocity_[v] + outline_velocity_start_[v]);
-  for (const Press& press : box.presses)
-    for (std::size_t w = 0; w < box.walls.size(); ++w)
-      if (press.share[w] != 0)
-        outline_.walls[w].velocity =
-            0.5 * (box.walls[w].velocity + (press.share[w] * press.speed) * box.walls[w].normal);
-  softgrain::add_contact_work(contacts, impulse, outline_, work, box.impulse);
-  outline_.walls = box.walls;
-  end_step_of_presses(box, contacts, impulse, dt);
-}
+template class ExplicitStep<2>;
+template class ExplicitStep<3>;
 
 }  // namespace softgrain

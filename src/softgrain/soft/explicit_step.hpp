@@ -6,9 +6,9 @@
 #include "softgrain/geometry/wall_motion.hpp"
 #include "softgrain/model/soft_step_report.hpp"
 #include "softgrain/model/work_budget.hpp"
+#include "softgrain/soft/contact_of.hpp"
 #include "softgrain/soft/history.hpp"
 #include "softgrain/soft/lumped_contacts.hpp"
-#include "softgrain/soft/outline_contacts.hpp"
 #include "softgrain/soft/pair_friction.hpp"
 #include "softgrain/soft/rigid_motion.hpp"
 #include "softgrain/soft/soft_grains.hpp"
@@ -16,7 +16,8 @@
 
 namespace softgrain {
 
-struct ExplicitOptions {
+template <int Dim>
+struct ExplicitOptionsOf {
   /// beta: internal forces are taken at x + beta dt v, which damps the mesh's own vibrations
   double damping_share = 0;
   SolverOptions solver{
@@ -24,12 +25,14 @@ struct ExplicitOptions {
   double friction = 0;
   double wall_friction = 0;
   std::vector<PairFriction> pair_friction{};  ///< of pairs of kinds, instead of those two
-  Vec<2> gravity{};                           ///< [m/s^2]
+  Vec<Dim> gravity{};                         ///< [m/s^2]
   double damping = 0;                         ///< zeta [1/s], see MassDamping
 };
+using ExplicitOptions = ExplicitOptionsOf<2>;
 
 /// That SoftStepReport::residual has to reach: of the worst contact.
-inline double residual_limit(const ExplicitOptions& options) {
+template <int Dim>
+double residual_limit(const ExplicitOptionsOf<Dim>& options) {
   return options.solver.worst_factor * options.solver.tolerance;
 }
 
@@ -38,30 +41,36 @@ struct StableStep {
   double longest = 0;  ///< [s] when the cells were last looked at
   int until_look = 0;  ///< sub-steps until they are again
   int between_looks = 16;
+  int until_search = 0;  ///< in space: sub-steps until contacts are looked for again
 };
 
 /// Soft grains between walls by symplectic Euler with contact dynamics, on the same data as ImplicitDynamics:
 ///   v_free = v + dt M^-1 (f_ext - f_int(x)),  v+ = v_free + M^-1 H p,  x+ = x + dt v+,
 ///   0 <= g(x+) _|_ p_n >= 0,  |p_t| <= mu p_n,
 /// with g(x+) linear about x + dt v: at x itself, sliding along an edge would drive vertices into it.
-class ExplicitDynamics {
+/// In space contacts are looked for every few sub-steps and keep their places in between.
+template <int Dim>
+class ExplicitStep {
  public:
-  ExplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains, const ExplicitOptions& explicit_options);
+  static constexpr int dimension = Dim;
+
+  ExplicitStep(GrainsOf<Dim> soft_grains, Box<Dim> box_of_grains,
+               const ExplicitOptionsOf<Dim>& explicit_options);
 
   /// One step of dt, in equal sub-steps of at most longest_stable_step: cells are looked at again every so
   /// many of them, more often while they change. Raises NumericalError if a point is inverted or cells are so
   /// deformed that thousands of sub-steps would be needed, naming the grain, and as check_wall_motion.
   SoftStepReport step(double dt);
 
-  /// Impulse of the grains on a wall in the last step [N s/m].
-  const Vec<2>& wall_impulse(int wall) const { return box.impulse[wall]; }
+  /// Impulse of the grains on a wall in the last step [N s/m in the plane].
+  const Vec<Dim>& wall_impulse(int wall) const { return box.impulse[wall]; }
   double mean_radius() const { return mean_radius_; }
 
-  SoftGrains grains;
-  Box<2> box;  ///< a model lends its own for a step
-  ExplicitOptions options;
-  std::vector<OutlineContact> contacts;
-  std::vector<Vec<2>> impulse;
+  GrainsOf<Dim> grains;
+  Box<Dim> box;  ///< a model lends its own for a step
+  ExplicitOptionsOf<Dim> options;
+  std::vector<ContactOf<Dim>> contacts;
+  std::vector<Vec<Dim>> impulse;
   double impulse_time = 0;  ///< the step over which they acted [s]
   WorkBudget work;          ///< since the start; there is no `inertia`
   FlowOfGrains last_flow;   ///< of the last sub-step
@@ -70,17 +79,18 @@ class ExplicitDynamics {
  private:
   /// Of a batch: its outline's nodes at the start of the step, and the work over the step.
   struct BatchStep {
-    WideVectors force, velocity;
+    WidePlaces<Dim> force, velocity;
     RigidTwist twist;  ///< of rigid grains at the start of the step
     Wide internal = 0.0, gravity = 0.0, damping = 0.0;
     FlowOfStep flow;
 
-    void add_work(const Vec<2, Wide>& internal_force, const Vec<2, Wide>& weight, const Vec<2, Wide>& moved) {
+    void add_work(const Vec<Dim, Wide>& internal_force, const Vec<Dim, Wide>& weight,
+                  const Vec<Dim, Wide>& moved) {
       internal += dot(internal_force, moved);
       gravity += dot(weight, moved);
     }
   };
-  Vec<2, Wide> weight(const GrainBatch& batch, int node) const;
+  Vec<Dim, Wide> weight(const BatchOf<Dim>& batch, int node) const;
   FrictionByKind friction_by_kind() const {
     return {grains.kinds(), options.friction, options.wall_friction, options.pair_friction};
   }
@@ -88,11 +98,13 @@ class ExplicitDynamics {
   double sub_steps(double dt) const;
   void sub_step(double dt, SoftStepReport& report);
   void take_back_spin();
+  void find_contacts(double dt);
   void fly_outline(double dt);
   void kick(double dt);
-  void kick_batch(double dt, const WideVectors& force, GrainBatch& batch, BatchStep& step) const;
-  void drift_batch(double dt, GrainBatch& batch, BatchStep& step) const;
+  void kick_batch(double dt, const WidePlaces<Dim>& force, BatchOf<Dim>& batch, BatchStep& step) const;
+  void drift_batch(double dt, BatchOf<Dim>& batch, BatchStep& step) const;
   void drift_outline(double dt);
+  // rigid grains, in the plane
   void fly_rigid(double dt, const GrainBatch& batch);
   void kick_rigid(double dt, GrainBatch& batch, BatchStep& step);
   void drift_rigid(double dt, GrainBatch& batch, BatchStep& step);
@@ -103,15 +115,28 @@ class ExplicitDynamics {
   void add_overlaps(SoftStepReport& report) const;
 
   double mean_radius_ = 0, smallest_radius_ = 0;
-  OutlineNeighbours neighbours_;
-  OutlineState outline_;
-  std::vector<Vec<2>> outline_velocity_, outline_velocity_start_;
+  NeighboursOf<Dim> neighbours_;
+  OutlineStateOf<Dim> outline_;
+  std::vector<Vec<Dim>> outline_velocity_, outline_velocity_start_;
   std::vector<double> inverse_mass_;  // (outline vertices)
   LumpedBodies bodies_;               // the rigid grains
   std::vector<int> body_of_grain_;    // or -1
-  LumpedContacts::Scratch lumped_scratch_;
+  typename LumpedSystem<Dim>::Scratch lumped_scratch_;
   std::vector<BatchStep> batch_step_;
-  MassDamping damping_;
+  MassDamping<Dim> damping_;
 };
+
+using ExplicitDynamics = ExplicitStep<2>;
+
+template <>
+void ExplicitDynamics::fly_rigid(double dt, const GrainBatch& batch);
+template <>
+void ExplicitDynamics::kick_rigid(double dt, GrainBatch& batch, BatchStep& step);
+template <>
+void ExplicitDynamics::drift_rigid(double dt, GrainBatch& batch, BatchStep& step);
+template <>
+void ExplicitDynamics::set_bodies(const GrainBatch& batch, const RigidTwist& twist);
+template <>
+RigidTwist ExplicitDynamics::twist_of_bodies(const GrainBatch& batch) const;
 
 }  // namespace softgrain

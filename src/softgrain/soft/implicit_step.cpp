@@ -57,10 +57,11 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains,
   explicit_step_ = stable_time_step(grains, 1);
   wave_time_ = smallest_radius_ / grains.fastest_wave();
   for (int k = 0; k < grains.kinds(); ++k) {
-    const auto& [law, density, rigid] = grains.material(k);
-    if (rigid) continue;
-    const double speed = smallest_radius_ / (smallest_radius_ / wave_speed(law, density));  // in old digits
-    const double force = least_force * density * speed * speed * mean_radius_;
+    const GrainMaterial& material = grains.material(k);
+    if (material.rigid) continue;
+    const double wave = wave_speed(material.law, material.density);
+    const double speed = smallest_radius_ / (smallest_radius_ / wave);  // in old digits
+    const double force = least_force * material.density * speed * speed * mean_radius_;
     least_contact_force_ = least_contact_force_ == 0 ? force : std::min(least_contact_force_, force);
   }
   for (const GrainBatch& batch : grains.batches) {

@@ -59,6 +59,8 @@ struct ImplicitOptions {
 /// balance is asked for apart (docs/decisions/0023).
 class ImplicitDynamics {
  public:
+  static constexpr int dimension = 2;
+
   ImplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains, const ImplicitOptions& implicit_options);
 
   /// One step of dt; walls move by dt times their velocity. A sub-step in which Newton's method or NLGS does
@@ -202,7 +204,7 @@ class ImplicitDynamics {
   std::vector<Vec<2>> impulse_start_;
   int failed_grain_ = -1;
   bool slow_ = false;  // the whole step is longer than the one whose inertia A has
-  MassDamping damping_;
+  MassDamping<2> damping_;
 };
 
 }  // namespace softgrain

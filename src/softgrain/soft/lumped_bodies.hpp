@@ -70,4 +70,15 @@ class BodyContacts {
   LumpedBodies& bodies_;
 };
 
+/// In space, where no grain is rigid yet.
+class NoBodyContacts {
+ public:
+  NoBodyContacts(auto&&...) {}
+  bool has(int /*contact*/) const { return false; }
+  std::span<const int> contacts() const { return {}; }
+  Mat<3> delassus_block(int /*contact*/) const { return {}; }
+  Vec<3> relative_velocity(int /*contact*/) const { return {}; }
+  void apply_impulse(int /*contact*/, const Vec<3>& /*dp*/) {}
+};
+
 }  // namespace softgrain

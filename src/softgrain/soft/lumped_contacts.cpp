@@ -13,38 +13,51 @@ constexpr int least_for_threads = 512;
 }  // namespace
 
 /// sum weight v
-inline Vec<2> LumpedContacts::velocity_of(const Row& row) const {
-  const Vec<2>* v = velocity_.data();
-  Vec<2> u = row.weight[0] * v[row.vertex[0]];
+template <int Dim>
+inline Vec<Dim> LumpedSystem<Dim>::velocity_of(const Row& row) const {
+  const Vec<Dim>* v = velocity_.data();
+  Vec<Dim> u = row.weight[0] * v[row.vertex[0]];
   if (row.vertices == 1) return u;
-  Vec<2> others = row.weight[1] * v[row.vertex[1]] + row.weight[2] * v[row.vertex[2]];
+  if constexpr (Dim == 3) {
+    const auto count = static_cast<std::size_t>(row.vertices);
+    for (std::size_t k = 1; k < count; ++k) u += row.weight[k] * v[row.vertex[k]];
+    return u;
+  }
+  Vec<Dim> others = row.weight[1] * v[row.vertex[1]] + row.weight[2] * v[row.vertex[2]];
   if (row.vertices == 5) others += row.weight[3] * v[row.vertex[3]] + row.weight[4] * v[row.vertex[4]];
   return u += others;
 }
 
-inline Vec<2> LumpedContacts::relative_velocity(const Row& row) const {
-  const Vec<2> u = velocity_of(row);
-  return {dot(row.normal, u) + row.offset[0], dot(perpendicular(row.normal), u) + row.offset[1]};
+template <int Dim>
+inline Vec<Dim> LumpedSystem<Dim>::relative_velocity(const Row& row) const {
+  return to_local(row.normal, velocity_of(row)) + row.offset;
 }
 
-inline void LumpedContacts::apply_impulse(const Row& row, const Vec<2>& dp) {
-  const Vec<2> P = dp[0] * row.normal + dp[1] * perpendicular(row.normal);
-  Vec<2>* v = velocity_.data();
+template <int Dim>
+inline void LumpedSystem<Dim>::apply_impulse(const Row& row, const Vec<Dim>& dp) {
+  const Vec<Dim> P = from_local(row.normal, dp);
+  Vec<Dim>* v = velocity_.data();
   v[row.vertex[0]] += row.mobility[0] * P;
   if (row.vertices == 1) return;
+  if constexpr (Dim == 3) {
+    const auto count = static_cast<std::size_t>(row.vertices);
+    for (std::size_t k = 1; k < count; ++k) v[row.vertex[k]] += row.mobility[k] * P;
+    return;
+  }
   for (std::size_t k = 1; k < 3; ++k) v[row.vertex[k]] += row.mobility[k] * P;
   if (row.vertices == 3) return;
   for (std::size_t k = 3; k < 5; ++k) v[row.vertex[k]] += row.mobility[k] * P;
 }
 
-LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, const OutlineState& outline,
-                               std::span<Vec<2>> velocity, std::span<const double> inverse_mass,
-                               LumpedBodies& bodies, Scratch& scratch)
+template <int Dim>
+LumpedSystem<Dim>::LumpedSystem(std::span<const ContactOf<Dim>> contacts, const OutlineStateOf<Dim>& outline,
+                                std::span<Vec<Dim>> velocity, std::span<const double> inverse_mass,
+                                LumpedBodies& bodies, Scratch& scratch)
     : rows_(scratch.rows),
       strips_(scratch.strips),
       velocity_(velocity),
       of_bodies_(contacts, outline, velocity, inverse_mass, bodies) {
-  strips_.sort(contacts, outline);
+  strips_.template sort<Dim>(contacts, outline);
   rows_.resize(contacts.size());
   for_each_strip([&](int strip) {
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
@@ -56,15 +69,18 @@ LumpedContacts::LumpedContacts(std::span<const OutlineContact> contacts, const O
 }
 
 /// work(strip) for all even strips, then for all odd ones.
+template <int Dim>
 template <class Work>
-void LumpedContacts::for_each_strip(const Work& work) const {
+void LumpedSystem<Dim>::for_each_strip(const Work& work) const {
   if (size() >= least_for_threads) return parallel_alternate(strips_.count(), work);
   for (const int first : {0, 1})
     for (int strip = first; strip < strips_.count(); strip += 2) work(strip);
 }
 
-LumpedContacts::Row LumpedContacts::row_of(const OutlineContact& contact, const OutlineState& outline,
-                                           std::span<const double> inverse_mass) const {
+template <int Dim>
+typename LumpedSystem<Dim>::Row LumpedSystem<Dim>::row_of(const ContactOf<Dim>& contact,
+                                                          const OutlineStateOf<Dim>& outline,
+                                                          std::span<const double> inverse_mass) const {
   Row row;
   std::size_t count = 0;
   contact.for_each_vertex([&](int vertex, double weight) {
@@ -76,27 +92,30 @@ LumpedContacts::Row LumpedContacts::row_of(const OutlineContact& contact, const 
   row.vertices = static_cast<int>(count);
   row.normal = contact.normal;
   if (contact.wall >= 0 || outline.cell.any()) {
-    const Vec<2> v =
+    const Vec<Dim> v =
         contact.wall >= 0 ? outline.walls[contact.wall].velocity : (1 / outline.dt) * contact.image_motion;
-    row.offset = {-dot(contact.normal, v), -dot(perpendicular(contact.normal), v)};
+    row.offset = -to_local(contact.normal, v);
   }
   row.inverse_delassus = 1 / row.delassus;
   row.offset[0] += contact.gap / outline.dt - relative_velocity(row)[0];
   return row;
 }
 
-Vec<2> LumpedContacts::relative_velocity(int contact) const {
+template <int Dim>
+Vec<Dim> LumpedSystem<Dim>::relative_velocity(int contact) const {
   return of_bodies_.has(contact) ? of_bodies_.relative_velocity(contact) : relative_velocity(row(contact));
 }
 
-void LumpedContacts::apply_impulse(int contact, const Vec<2>& dp) {
+template <int Dim>
+void LumpedSystem<Dim>::apply_impulse(int contact, const Vec<Dim>& dp) {
   of_bodies_.has(contact) ? of_bodies_.apply_impulse(contact, dp) : apply_impulse(row(contact), dp);
 }
 
-void LumpedContacts::apply_impulses(std::span<const Vec<2>> impulse) {
+template <int Dim>
+void LumpedSystem<Dim>::apply_impulses(std::span<const Vec<Dim>> impulse) {
   for_each_strip([&](int strip) {
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k)
-      if (const Vec<2>& p = impulse[rows_[k].contact]; p[0] > 0 && !of_bodies_.has(rows_[k].contact))
+      if (const Vec<Dim>& p = impulse[rows_[k].contact]; p[0] > 0 && !of_bodies_.has(rows_[k].contact))
         apply_impulse(rows_[k], p);
   });
   for (const int c : of_bodies_.contacts())
@@ -104,23 +123,25 @@ void LumpedContacts::apply_impulses(std::span<const Vec<2>> impulse) {
 }
 
 /// Puts one contact right, and adds the violation that it showed.
-inline void LumpedContacts::solve(const Row& row, Vec<2>& p, double friction, const SolverOptions& options,
-                                  Violation& violation) {
-  const Vec<2> v = velocity_of(row);
+template <int Dim>
+inline void LumpedSystem<Dim>::solve(const Row& row, Vec<Dim>& p, double friction,
+                                     const SolverOptions& options, Violation& violation) {
+  const Vec<Dim> v = velocity_of(row);
   const double u_n = dot(row.normal, v) + row.offset[0];
   if (p[0] == 0 && u_n >= 0) return;
-  const double u_t = friction > 0 ? dot(perpendicular(row.normal), v) + row.offset[1] : 0;
+  const Vec<Dim> u = friction > 0 ? to_local(row.normal, v) + row.offset : Vec<Dim>{u_n};
   const double gain = row.inverse_delassus;
-  const Vec<2> solved = solve_uncoupled(p, Vec<2>{u_n, u_t}, gain, gain, friction);
+  const Vec<Dim> solved = solve_uncoupled(p, u, gain, gain, friction);
   violation.add(row.delassus * (solved - p), solved[0]);
-  const Vec<2> next = relaxed_impulse(p, solved, friction, options.relaxation);
-  const Vec<2> dp = next - p;
+  const Vec<Dim> next = relaxed_impulse(p, solved, friction, options.relaxation);
+  const Vec<Dim> dp = next - p;
   p = next;
   apply_impulse(row, dp);
 }
 
-Violation LumpedContacts::sweep(std::span<Vec<2>> impulse, std::span<const double> friction,
-                                const SolverOptions& options) {
+template <int Dim>
+Violation LumpedSystem<Dim>::sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
+                                   const SolverOptions& options) {
   std::vector<Violation> of_strip(strips_.count());
   for_each_strip([&](int strip) {
     Violation sum;
@@ -135,9 +156,12 @@ Violation LumpedContacts::sweep(std::span<Vec<2>> impulse, std::span<const doubl
   for (const Violation& of_one : of_strip) violation += of_one;
   for (const int c : of_bodies_.contacts())
     if (!(pushed_ && pushed_->has(c)))
-      nlgs_update<2>(*this, c, impulse[c], friction[c], options.relaxation, violation);
-  if (pushed_) pushed_->sweep<2>(*this, impulse, friction, options.relaxation, violation);
+      nlgs_update<Dim>(*this, c, impulse[c], friction[c], options.relaxation, violation);
+  if (pushed_) pushed_->template sweep<Dim>(*this, impulse, friction, options.relaxation, violation);
   return violation;
 }
+
+template class LumpedSystem<2>;
+template class LumpedSystem<3>;
 
 }  // namespace softgrain

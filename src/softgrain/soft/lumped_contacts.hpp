@@ -6,9 +6,9 @@
 #include "softgrain/contact/contact_system.hpp"
 #include "softgrain/contact/pushed_bodies.hpp"
 #include "softgrain/contact/residual.hpp"
+#include "softgrain/contact/tangents.hpp"
 #include "softgrain/soft/contact_strips.hpp"
 #include "softgrain/soft/lumped_bodies.hpp"
-#include "softgrain/soft/outline_contacts.hpp"
 
 namespace softgrain {
 
@@ -17,64 +17,72 @@ namespace softgrain {
 /// or at a wall sum_k w_k v_k and sum_k w_k^2/m_k,
 /// with u_n changed to the gap at the end of the step over dt, (g + dt n . (u - u_found))/dt, where u_found
 /// had brought the outlines to where the contacts were found.
-class LumpedContacts {
+template <int Dim>
+class LumpedSystem {
  public:
   struct Scratch;
   /// velocity: (outline vertices) [m/s], u_found when constructed, then changed by the caller and by
   /// impulses, as are those of the rigid bodies; inverse_mass: (outline vertices) [m/kg]. Keeps references to
   /// the velocities, the bodies and the scratch.
-  LumpedContacts(std::span<const OutlineContact> contacts, const OutlineState& outline,
-                 std::span<Vec<2>> velocity, std::span<const double> inverse_mass, LumpedBodies& bodies,
-                 Scratch& scratch);
+  LumpedSystem(std::span<const ContactOf<Dim>> contacts, const OutlineStateOf<Dim>& outline,
+               std::span<Vec<Dim>> velocity, std::span<const double> inverse_mass, LumpedBodies& bodies,
+               Scratch& scratch);
 
   int size() const { return static_cast<int>(rows_.size()); }
-  Mat<2> delassus_block(int contact) const {
+  Mat<Dim> delassus_block(int contact) const {
     if (of_bodies_.has(contact)) return of_bodies_.delassus_block(contact);
-    const double W = row(contact).delassus;
-    return Mat<2>::diagonal({W, W});
+    Vec<Dim> W;
+    for (int k = 0; k < Dim; ++k) W[k] = row(contact).delassus;
+    return Mat<Dim>::diagonal(W);
   }
-  Vec<2> relative_velocity(int contact) const;
-  void apply_impulse(int contact, const Vec<2>& dp);
+  Vec<Dim> relative_velocity(int contact) const;
+  void apply_impulse(int contact, const Vec<Dim>& dp);
   /// The impulses of all contacts.
-  void apply_impulses(std::span<const Vec<2>> impulse);
+  void apply_impulses(std::span<const Vec<Dim>> impulse);
   /// One pass of Gauss-Seidel, first over the even strips, then over the odd ones, then over the contacts of
   /// rigid bodies, those of pushed bodies last. Where W is a multiple of 1, a
   /// contact is solved by
   ///   p_n = max(0, p_n - u_n/W),  p_t = p_t - u_t/W, cut to |p_t| <= mu p_n.
-  Violation sweep(std::span<Vec<2>> impulse, std::span<const double> friction, const SolverOptions& options);
+  Violation sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
+                  const SolverOptions& options);
   /// Sweeps then move these bodies too. Keeps a reference.
   void push(PushedBodies& bodies) { pushed_ = &bodies; }
 
  private:
-  // per contact and sweep: reads 160 B in the order of memory, and five velocities
+  static constexpr std::size_t most_vertices = Dim == 2 ? 5 : 17;
+  // per contact and sweep: reads 160 B in the order of memory, and five velocities; in space 460 B and 17
   struct Row {
     int contact = 0;
-    int vertices = 0;                  // 5; at a wall 3, or 1
-    std::array<int, 5> vertex{};       // the slave, then the master's; or those of a place at a wall
-    std::array<double, 5> weight{};    // 1, -w_k; or w_k
-    std::array<double, 5> mobility{};  // weight/m: velocity by a unit impulse
-    Vec<2> normal, offset;             // u = (n, t) . sum weight v + offset
+    int vertices = 0;                         // 5, 17 in space; at a wall 3, 16, or 1
+    std::array<int, most_vertices> vertex{};  // the slave, then the master's; or those of a place at a wall
+    std::array<double, most_vertices> weight{};    // 1, -w_k; or w_k
+    std::array<double, most_vertices> mobility{};  // weight/m: velocity by a unit impulse
+    Vec<Dim> normal, offset;                       // u = (n, t) . sum weight v + offset
     double delassus = 0, inverse_delassus = 0;
   };
   const Row& row(int contact) const { return rows_[strips_.place[contact]]; }
-  Row row_of(const OutlineContact& contact, const OutlineState& outline,
+  Row row_of(const ContactOf<Dim>& contact, const OutlineStateOf<Dim>& outline,
              std::span<const double> inverse_mass) const;
-  Vec<2> velocity_of(const Row& row) const;
-  Vec<2> relative_velocity(const Row& row) const;
-  void apply_impulse(const Row& row, const Vec<2>& dp);
-  void solve(const Row& row, Vec<2>& p, double friction, const SolverOptions& options, Violation& violation);
+  Vec<Dim> velocity_of(const Row& row) const;
+  Vec<Dim> relative_velocity(const Row& row) const;
+  void apply_impulse(const Row& row, const Vec<Dim>& dp);
+  void solve(const Row& row, Vec<Dim>& p, double friction, const SolverOptions& options,
+             Violation& violation);
   template <class Work>
   void for_each_strip(const Work& work) const;
 
   std::vector<Row>& rows_;  // strip by strip
   ContactStrips& strips_;
-  std::span<Vec<2>> velocity_;
-  BodyContacts of_bodies_;
+  std::span<Vec<Dim>> velocity_;
+  std::conditional_t<Dim == 2, BodyContacts, NoBodyContacts> of_bodies_;
   PushedBodies* pushed_ = nullptr;
 };
 
+using LumpedContacts = LumpedSystem<2>;
+
 /// Memory kept from step to step.
-struct LumpedContacts::Scratch {
+template <int Dim>
+struct LumpedSystem<Dim>::Scratch {
   std::vector<Row> rows;
   ContactStrips strips;
 };

@@ -98,11 +98,6 @@ void find_near(const SoftGrains& grains, std::span<const Vec<2>> position, std::
 
 }  // namespace
 
-std::array<double, 4> curve_weights(double xi) {
-  const double a = xi * xi, b = a * xi;
-  return {-xi / 2 + a - b / 2, 1 - 2.5 * a + 1.5 * b, xi / 2 + 2 * a - 1.5 * b, (b - a) / 2};
-}
-
 bool OutlineNeighbours::moved_far(const OutlineState& state) {
   if (reference_.size() != state.position.size()) return true;
   const bool repeats = state.cell.any();

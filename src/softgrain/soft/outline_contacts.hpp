@@ -3,17 +3,15 @@
 #include <vector>
 
 #include "softgrain/geometry/periodic_cell.hpp"
-#include "softgrain/geometry/wall.hpp"
 #include "softgrain/math/vec.hpp"
+#include "softgrain/soft/curve_weights.hpp"
+#include "softgrain/soft/outline_state.hpp"
 #include "softgrain/soft/soft_grains.hpp"
 
 namespace softgrain {
 
-/// The outline of a grain is the smooth closed curve through its vertices (uniform Catmull-Rom): between x_1
-/// and x_2, with their neighbours x_0 and x_3 along the outline,
-///   c(xi) = sum_k w_k(xi) x_k,  xi in [0, 1].
-std::array<double, 4> curve_weights(double xi);
-
+/// The outline of a grain is the smooth closed curve through its vertices (curve_weights).
+///
 /// An outline vertex (the slave) against another grain's outline (the master), or against a wall. Both grains
 /// of a pair bring their vertices, so that neither outline sinks between the vertices of the other. To a wall
 /// a vertex brings its arc (OutlineArc): it faces the wall with the place of the arc that lies lowest. So
@@ -64,22 +62,6 @@ struct OutlineContact {
     }
     const auto weight = weights();
     for (std::size_t k = 0; k < 4; ++k) visit(master[k], -weight[k]);
-  }
-};
-
-/// Where the outlines are, and where they were at the start of the step.
-struct OutlineState {
-  std::vector<Vec<2>> position, start;  ///< (outline vertices) [m]
-  std::vector<Wall<2>> walls;           ///< with their points at the end of the step
-  double dt = 0;                        ///< [s]
-  /// Share of the step at which pairs take place and normal: half-way contact gives no energy; 1 where the
-  /// step is quasi-static and its end must be an equilibrium (docs/decisions/0026).
-  double normals_at = 0.5;
-  PeriodicCell<2> cell{};  ///< at the end of the step
-
-  /// Where place and normal are taken [m].
-  Vec<2> on_the_way(int vertex) const {
-    return start[vertex] + normals_at * (position[vertex] - start[vertex]);
   }
 };
 

@@ -22,15 +22,18 @@ FrictionByKind::FrictionByKind(int kinds, double between_grains, double at_walls
   }
 }
 
-std::vector<double> FrictionByKind::of(const SoftGrains& grains,
-                                       std::span<const OutlineContact> contacts) const {
+template <int Dim>
+std::vector<double> FrictionByKind::of(const GrainsOf<Dim>& grains, Contacts<Dim> contacts) const {
   std::vector<double> friction;
-  for (const OutlineContact& c : contacts) {
+  for (const auto& c : contacts) {
     const int kind = grains.kind(grains.grain_of_vertex(c.vertex));
     friction.push_back(c.wall >= 0 ? at_walls(kind)
                                    : between(kind, grains.kind(grains.grain_of_vertex(c.master[0]))));
   }
   return friction;
 }
+
+template std::vector<double> FrictionByKind::of(const GrainsOf<2>&, Contacts<2>) const;
+template std::vector<double> FrictionByKind::of(const GrainsOf<3>&, Contacts<3>) const;
 
 }  // namespace softgrain

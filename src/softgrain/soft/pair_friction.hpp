@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-#include "softgrain/soft/outline_contacts.hpp"
+#include "softgrain/soft/contact_of.hpp"
 #include "softgrain/soft/soft_grains.hpp"
 
 namespace softgrain {
@@ -25,7 +25,8 @@ class FrictionByKind {
   double between(int kind, int other) const { return between_[kind * kinds_ + other]; }
   double at_walls(int kind) const { return at_walls_[kind]; }
   /// mu of each contact.
-  std::vector<double> of(const SoftGrains& grains, std::span<const OutlineContact> contacts) const;
+  template <int Dim>
+  std::vector<double> of(const GrainsOf<Dim>& grains, Contacts<Dim> contacts) const;
 
  private:
   int kinds_;

@@ -5,8 +5,8 @@
 
 namespace softgrain {
 
-PushedBodies pressed_walls(const Box<2>& box, std::span<const OutlineContact> contacts,
-                           std::span<const Vec<2>> impulse, double dt) {
+template <int Dim>
+PushedBodies pressed_walls(const Box<Dim>& box, Contacts<Dim> contacts, Impulses<Dim> impulse, double dt) {
   PushedBodies pushed;
   if (box.presses.empty()) return pushed;
   std::vector<Pushing> of_wall(box.walls.size());
@@ -28,7 +28,8 @@ PushedBodies pressed_walls(const Box<2>& box, std::span<const OutlineContact> co
   return pushed;
 }
 
-double move_presses(Box<2>& box, const PushedBodies& solved, double dt) {
+template <int Dim>
+double move_presses(Box<Dim>& box, const PushedBodies& solved, double dt) {
   double furthest = 0;
   for (std::size_t k = 0; k < solved.bodies.size(); ++k) {
     const Press& press = box.presses[k];
@@ -42,11 +43,18 @@ double move_presses(Box<2>& box, const PushedBodies& solved, double dt) {
   return furthest;
 }
 
-void end_step_of_presses(Box<2>& box, std::span<const OutlineContact> contacts,
-                         std::span<const Vec<2>> impulse, double dt) {
+template <int Dim>
+void end_step_of_presses(Box<Dim>& box, Contacts<Dim> contacts, Impulses<Dim> impulse, double dt) {
   const PushedBodies pushed = pressed_walls(box, contacts, impulse, dt);
   for (std::size_t k = 0; k < box.presses.size(); ++k)
     box.presses[k].end_step(box.speed_of(box.presses[k]), pushed.bodies[k].push, dt);
 }
+
+template PushedBodies pressed_walls(const Box<2>&, Contacts<2>, Impulses<2>, double);
+template double move_presses(Box<2>&, const PushedBodies&, double);
+template void end_step_of_presses(Box<2>&, Contacts<2>, Impulses<2>, double);
+template PushedBodies pressed_walls(const Box<3>&, Contacts<3>, Impulses<3>, double);
+template double move_presses(Box<3>&, const PushedBodies&, double);
+template void end_step_of_presses(Box<3>&, Contacts<3>, Impulses<3>, double);
 
 }  // namespace softgrain

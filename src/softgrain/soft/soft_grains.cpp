@@ -9,15 +9,25 @@
 #include "softgrain/soft/history.hpp"
 
 namespace softgrain {
+namespace {
 
-SoftGrains::SoftGrains(std::vector<GrainPlacement> grains, std::vector<GrainMaterial> materials)
+Mat<2> rotation_by(double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {{c, -s, s, c}};
+}
+Mat<3> rotation_by(const Mat<3>& Q) { return Q; }
+
+}  // namespace
+
+template <int Dim>
+GrainsOf<Dim>::GrainsOf(std::vector<PlacementOf<Dim>> grains, std::vector<GrainMaterial> materials)
     : materials_(std::move(materials)) {
   for (const GrainMaterial& material : materials_)
     require(material.density > 0, "the density must be > 0, got {} kg/m^3", material.density);
   place_.resize(grains.size());
   outline_begin_.push_back(0);
   for (int g = 0; g < static_cast<int>(grains.size()); ++g) {
-    const GrainPlacement& placed = grains[g];
+    const PlacementOf<Dim>& placed = grains[g];
     require(placed.radius > 0, "grain {}: the radius must be > 0, got {} m", g, placed.radius);
     require(placed.kind >= 0 && placed.kind < kinds(), "grain {}: there is no kind {}", g, placed.kind);
     require(placed.topology->rigid() == materials_[placed.kind].rigid,
@@ -44,22 +54,20 @@ SoftGrains::SoftGrains(std::vector<GrainPlacement> grains, std::vector<GrainMate
       batches[b].grain.fill(-1);
       batches[b].position.resize(placed.topology->grid.nodes());
       batches[b].velocity.resize(placed.topology->grid.nodes());
-      batches[b].history = undeformed_history(law(batches[b]), *placed.topology);
+      if constexpr (Dim == 2) batches[b].history = undeformed_history(law(batches[b]), *placed.topology);
     }
-    GrainBatch& batch = batches[b];
+    Batch& batch = batches[b];
     int lane = 0;
     while (batch.grain[lane] >= 0) ++lane;
     batch.grain[lane] = g;
     place_[g] = {b, lane};
-    const double c = std::cos(placed.angle), s = std::sin(placed.angle);
+    const Mat<Dim> Q = rotation_by(placed.angle);
     for (int free = lane; free < Wide::size; ++free) {  // the lanes without a grain repeat the last one
       batch.radius.set(free, placed.radius);
-      batch.placed_along[0].set(free, c);
-      batch.placed_along[1].set(free, s);
+      for (int d = 0; d < 2; ++d) batch.placed_along[d].set(free, Q(d, 0));
       for (int i = 0; i < placed.topology->grid.nodes(); ++i) {
-        const Vec<2>& X = placed.topology->grid.node[i];
-        const Vec<2> x = placed.centre + placed.radius * Vec<2>{c * X[0] - s * X[1], s * X[0] + c * X[1]};
-        for (int d = 0; d < 2; ++d) {
+        const Vec<Dim> x = placed.centre + placed.radius * (Q * placed.topology->grid.node[i]);
+        for (int d = 0; d < Dim; ++d) {
           batch.position[i][d].set(free, x[d]);
           batch.velocity[i][d].set(free, placed.velocity[d]);
         }
@@ -68,31 +76,36 @@ SoftGrains::SoftGrains(std::vector<GrainPlacement> grains, std::vector<GrainMate
   }
 }
 
-double SoftGrains::mean_density() const {
+template <int Dim>
+double GrainsOf<Dim>::mean_density() const {
   if (kinds() == 1) return materials_.front().density;  // to the last digit
   double mass_of_all = 0;
   for (int g = 0; g < size(); ++g) mass_of_all += mass(g);
   return mass_of_all / undeformed_area();
 }
 
-bool SoftGrains::has_rigid() const {
+template <int Dim>
+bool GrainsOf<Dim>::has_rigid() const {
   return std::any_of(materials_.begin(), materials_.end(),
                      [](const GrainMaterial& material) { return material.rigid; });
 }
 
-bool SoftGrains::has_history() const {
+template <int Dim>
+bool GrainsOf<Dim>::has_history() const {
   return std::any_of(materials_.begin(), materials_.end(),
                      [](const GrainMaterial& material) { return softgrain::has_history(material.law); });
 }
 
-double SoftGrains::fastest_wave() const {
+template <int Dim>
+double GrainsOf<Dim>::fastest_wave() const {
   double fastest = 0;
   for (const GrainMaterial& material : materials_)
     if (!material.rigid) fastest = std::max(fastest, wave_speed(material.law, material.density));
   return fastest;
 }
 
-double SoftGrains::largest_wave_modulus() const {
+template <int Dim>
+double GrainsOf<Dim>::largest_wave_modulus() const {
   double largest = 0;
   for (const GrainMaterial& material : materials_) {
     if (material.rigid) continue;
@@ -102,53 +115,60 @@ double SoftGrains::largest_wave_modulus() const {
   return largest;
 }
 
+template <int Dim>
+double GrainsOf<Dim>::mass(int grain) const {
+  return materials_[kind(grain)].density * body_size(*shapes_[grain]) * radius_[grain] * radius_[grain] *
+         (Dim == 3 ? radius_[grain] : 1);
+}
+
+template <>
 double SoftGrains::radius_of_area(int grain) const {
   const Topology& shape = topology(grain);
   return shape.round ? radius(grain) : radius(grain) * std::sqrt(shape.area / std::numbers::pi);
 }
 
-double SoftGrains::mass(int grain) const {
-  return materials_[kind(grain)].density * shapes_[grain]->area * radius_[grain] * radius_[grain];
-}
-
+template <>
 std::array<int, 2> SoftGrains::beside(int vertex) const {
   const int grain = grain_of_vertex(vertex), begin = outline_begin(grain), end = outline_end(grain);
   return {vertex > begin ? vertex - 1 : end - 1, vertex + 1 < end ? vertex + 1 : begin};
 }
 
-void SoftGrains::gather_outline(std::vector<Vec<2>>& position) const {
+template <int Dim>
+void GrainsOf<Dim>::gather_outline(std::vector<Vec<Dim>>& position) const {
   position.resize(outline_size());
-  for (const GrainBatch& batch : batches)
-    for_each_vertex(batch, [&](int v, int i, int lane) {
-      position[v] = {batch.position[i][0][lane], batch.position[i][1][lane]};
-    });
+  for (const Batch& batch : batches)
+    for_each_vertex(batch, [&](int v, int i, int lane) { position[v] = lane_of(batch.position[i], lane); });
 }
 
-void SoftGrains::scatter_outline(std::span<const Vec<2>> value, const GrainBatch& batch,
-                                 WideVectors& nodes) const {
+template <int Dim>
+void GrainsOf<Dim>::scatter_outline(std::span<const Vec<Dim>> value, const Batch& batch,
+                                    WidePlaces<Dim>& nodes) const {
   for_each_vertex(batch, [&](int v, int i, int lane) {
-    for (int d = 0; d < 2; ++d) nodes[i][d].set(lane, nodes[i][d][lane] + value[v][d]);
+    for (int d = 0; d < Dim; ++d) nodes[i][d].set(lane, nodes[i][d][lane] + value[v][d]);
   });
 }
 
-Vec<2> SoftGrains::node_position(int grain, int node) const {
-  const GrainBatch& batch = batches[place_[grain].batch];
+template <int Dim>
+Vec<Dim> GrainsOf<Dim>::node_position(int grain, int node) const {
+  const Batch& batch = batches[place_[grain].batch];
   const int lane = place_[grain].lane;
-  return {batch.position[node][0][lane], batch.position[node][1][lane]};
+  return lane_of(batch.position[node], lane);
 }
 
-Vec<2> SoftGrains::momentum() const {
-  Vec<2> sum;
-  for (const GrainBatch& batch : batches)
+template <int Dim>
+Vec<Dim> GrainsOf<Dim>::momentum() const {
+  Vec<Dim> sum;
+  for (const Batch& batch : batches)
     for (int i = 0; i < batch.topology->grid.nodes(); ++i)
       for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
-        for (int d = 0; d < 2; ++d) sum[d] += (node_mass(batch, i) * batch.velocity[i][d])[lane];
+        for (int d = 0; d < Dim; ++d) sum[d] += (node_mass(batch, i) * batch.velocity[i][d])[lane];
   return sum;
 }
 
-double SoftGrains::kinetic_energy() const {
+template <int Dim>
+double GrainsOf<Dim>::kinetic_energy() const {
   double sum = 0;
-  for (const GrainBatch& batch : batches)
+  for (const Batch& batch : batches)
     for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
       const Wide energy = 0.5 * node_mass(batch, i) * dot(batch.velocity[i], batch.velocity[i]);
       for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) sum += energy[lane];
@@ -156,18 +176,20 @@ double SoftGrains::kinetic_energy() const {
   return sum;
 }
 
-double SoftGrains::undeformed_area() const {
+template <int Dim>
+double GrainsOf<Dim>::undeformed_area() const {
   double sum = 0;
   for (int g = 0; g < size(); ++g) sum += mass(g) / materials_[kind(g)].density;
   return sum;
 }
 
-int SoftGrains::runaway_grain(double dt) const {
+template <int Dim>
+int GrainsOf<Dim>::runaway_grain(double dt) const {
   std::vector<int> runaway(batches.size(), -1);
   parallel_for(static_cast<int>(batches.size()), [&](int b) {
-    const GrainBatch& batch = batches[b];
+    const Batch& batch = batches[b];
     Wide sum = 0.0;
-    for (const Vec<2, Wide>& v : batch.velocity) sum += dot(v, v);
+    for (const Vec<Dim, Wide>& v : batch.velocity) sum += dot(v, v);
     const double nodes = static_cast<double>(batch.velocity.size());
     for (int lane = Wide::size - 1; lane >= 0; --lane)
       if (batch.grain[lane] >= 0 &&
@@ -177,17 +199,6 @@ int SoftGrains::runaway_grain(double dt) const {
   for (const int grain : runaway)
     if (grain >= 0) return grain;
   return -1;
-}
-
-Vec<2, Wide> centre_of_mass(const SoftGrains& grains, const GrainBatch& batch, const WideVectors& x) {
-  Wide mass = 0.0;
-  Vec<2, Wide> first{};
-  for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
-    const Wide m = grains.node_mass(batch, i);
-    mass += m;
-    first += m * x[i];
-  }
-  return (1.0 / mass) * first;
 }
 
 Vec<2, Wide> affine_velocity(const SoftGrains& grains, const GrainBatch& batch, const Mat<2>& L) {
@@ -207,5 +218,8 @@ double add_affine_velocity(SoftGrains& grains, const Mat<2>& L) {
   }
   return grains.kinetic_energy() - before;
 }
+
+template class GrainsOf<2>;
+template class GrainsOf<3>;
 
 }  // namespace softgrain

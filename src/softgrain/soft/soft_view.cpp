@@ -12,6 +12,7 @@
 #include "softgrain/soft/equilibrium.hpp"
 #include "softgrain/soft/history.hpp"
 #include "softgrain/soft/point_states.hpp"
+#include "softgrain/soft/solid_equilibrium.hpp"
 
 namespace softgrain {
 
@@ -55,41 +56,45 @@ Outlines outlines_of(const SoftGrains& grains) {
   return all;
 }
 
-Bodies nodes_of(const SoftGrains& grains) {
-  Bodies nodes;
+template <int Dim>
+BodiesOf<Dim> nodes_of(const GrainsOf<Dim>& grains) {
+  BodiesOf<Dim> nodes;
   for (int g = 0; g < grains.size(); ++g) {
     const auto [batch, lane] = grains.batch_of(g);
     for (int i = 0; i < grains.topology(g).grid.nodes(); ++i) {
       nodes.mass.push_back(grains.node_mass(*batch, i)[lane]);
-      nodes.velocity.push_back({batch->velocity[i][0][lane], batch->velocity[i][1][lane]});
+      nodes.velocity.push_back(lane_of(batch->velocity[i], lane));
       nodes.grain.push_back(g);
     }
   }
   return nodes;
 }
 
-std::vector<Vec<2>> centres_of(const SoftGrains& grains) {
-  std::vector<Vec<2>> centre(grains.size());
-  for (const GrainBatch& batch : grains.batches) {
-    const Vec<2, Wide> x = centre_of_mass(grains, batch, batch.position);
+template <int Dim>
+std::vector<Vec<Dim>> centres_of(const GrainsOf<Dim>& grains) {
+  std::vector<Vec<Dim>> centre(grains.size());
+  for (const BatchOf<Dim>& batch : grains.batches) {
+    const Vec<Dim, Wide> x = centre_of_mass(grains, batch, batch.position);
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
-      centre[batch.grain[lane]] = {x[0][lane], x[1][lane]};
+      centre[batch.grain[lane]] = lane_of(x, lane);
   }
   return centre;
 }
 
-double stored_energy(const SoftGrains& grains) {
+template <int Dim>
+double stored_energy(const GrainsOf<Dim>& grains) {
   double energy = 0;
-  for (const GrainBatch& batch : grains.batches) {
+  for (const BatchOf<Dim>& batch : grains.batches) {
     const Wide elastic = elastic_energy(grains, batch);
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) energy += elastic[lane];
   }
   return energy;
 }
 
-double least_J(const SoftGrains& grains) {
+template <int Dim>
+double least_J(const GrainsOf<Dim>& grains) {
   double least = std::numeric_limits<double>::infinity();
-  for (const GrainBatch& batch : grains.batches) {
+  for (const BatchOf<Dim>& batch : grains.batches) {
     const Wide J = least_J(batch);
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) least = std::min(least, J[lane]);
   }
@@ -191,42 +196,44 @@ Scene soft_scene(const SoftView& view) {
   return scene;
 }
 
-std::vector<GrainView> grain_views(const SoftGrains& grains) {
-  static_assert(sizeof(Vec<2, Wide>) == 2 * Wide::size * sizeof(double));
-  const auto lane_of = [](const WideVectors& nodes, int first, int lane) {
+template <int Dim>
+std::vector<GrainView> grain_views(const GrainsOf<Dim>& grains) {
+  static_assert(sizeof(Vec<Dim, Wide>) == Dim * Wide::size * sizeof(double));
+  const auto in_lane = [](const WidePlaces<Dim>& nodes, int first, int lane) {
     return VectorView{.begin = reinterpret_cast<const double*>(&nodes[first]) + lane,
                       .rows = nodes.size() - static_cast<std::size_t>(first),
-                      .row = 2 * Wide::size,
+                      .row = Dim * Wide::size,
                       .component = Wide::size};
   };
   std::vector<GrainView> views;
   for (int g = 0; g < grains.size(); ++g) {
     const auto [batch, lane] = grains.batch_of(g);
-    views.push_back({.position = lane_of(batch->position, 0, lane),
-                     .velocity = lane_of(batch->velocity, 0, lane),
-                     .outline = lane_of(batch->position, grains.topology(g).grid.outline_begin, lane)});
+    views.push_back({.position = in_lane(batch->position, 0, lane),
+                     .velocity = in_lane(batch->velocity, 0, lane),
+                     .outline = in_lane(batch->position, grains.topology(g).grid.outline_begin, lane)});
   }
   return views;
 }
 
-void visit_nodes(SoftGrains& grains, StateVisitor& visit) {
-  const auto declare = [&](const Field& field, WideVectors GrainBatch::*nodes) {
+template <int Dim>
+void visit_nodes(GrainsOf<Dim>& grains, StateVisitor& visit) {
+  using Batch = BatchOf<Dim>;
+  const auto declare = [&](const Field& field, WidePlaces<Dim> Batch::*nodes) {
     std::vector<double> values;
-    for (const GrainBatch& batch : grains.batches)
-      for (const Vec<2, Wide>& v : batch.*nodes)
-        for (int d = 0; d < 2; ++d)
+    for (const Batch& batch : grains.batches)
+      for (const Vec<Dim, Wide>& v : batch.*nodes)
+        for (int d = 0; d < Dim; ++d)
           for (int lane = 0; lane < Wide::size; ++lane) values.push_back(v[d][lane]);
     visit.rows(field, values, Wide::size);
     const double* value = values.data();
-    for (GrainBatch& batch : grains.batches)
-      for (Vec<2, Wide>& v : batch.*nodes)
-        for (int d = 0; d < 2; ++d, value += Wide::size) v[d] = load_wide(value);
+    for (Batch& batch : grains.batches)
+      for (Vec<Dim, Wide>& v : batch.*nodes)
+        for (int d = 0; d < Dim; ++d, value += Wide::size) v[d] = load_wide(value);
   };
-  declare({"position", "m", Owner::node, Role::state, "x, then y of each node of eight grains"},
-          &GrainBatch::position);
-  declare({"velocity", "m/s", Owner::node, Role::state, "the same of their velocities"},
-          &GrainBatch::velocity);
-  visit_history(grains, visit);
+  declare({"position", "m", Owner::node, Role::state, "x, then y (and z) of each node of eight grains"},
+          &Batch::position);
+  declare({"velocity", "m/s", Owner::node, Role::state, "the same of their velocities"}, &Batch::velocity);
+  if constexpr (Dim == 2) visit_history(grains, visit);
 }
 
 namespace {
@@ -256,10 +263,14 @@ void visit_contacts(const SoftGrains& grains, int walls, bool repeats, std::vect
     places.push_back({c.share, c.normal[0], c.normal[1], c.gap, c.slip});
     if (repeats) images.push_back(c.image);
   }
-  visit.list({"contact_bodies", "", Owner::contact, Role::start, "vertex, wall or -1, four master vertices"},
-             bodies, bodies_of_contact);
-  visit.list({"contact_places", "", Owner::contact, Role::start, "share, normal (2), gap [m], slip [m]"},
-             places);
+  visit.list(
+      {"contact_bodies", "", Owner::contact, Role::start,
+       "vertex, wall or -1, four master vertices; in space point, vertex, wall or -1, 16 of the patch"},
+      bodies, bodies_of_contact);
+  visit.list(
+      {"contact_places", "", Owner::contact, Role::start,
+       "share, normal (2), gap [m], slip [m]; in space normal (3), gap [m], weights of the patch (16)"},
+      places);
   if (repeats)
     visit.list({"contact_image", "m", Owner::contact, Role::start, "from the master to where it is met"},
                images);
@@ -289,5 +300,18 @@ void visit_contacts(const SoftGrains& grains, int walls, bool repeats, std::vect
                         .image = repeats ? images[c] : Vec<2>{}});
   }
 }
+
+template BodiesOf<2> nodes_of(const GrainsOf<2>&);
+template std::vector<Vec<2>> centres_of(const GrainsOf<2>&);
+template double stored_energy(const GrainsOf<2>&);
+template double least_J(const GrainsOf<2>&);
+template std::vector<GrainView> grain_views(const GrainsOf<2>&);
+template void visit_nodes(GrainsOf<2>&, StateVisitor&);
+template BodiesOf<3> nodes_of(const GrainsOf<3>&);
+template std::vector<Vec<3>> centres_of(const GrainsOf<3>&);
+template double stored_energy(const GrainsOf<3>&);
+template double least_J(const GrainsOf<3>&);
+template std::vector<GrainView> grain_views(const GrainsOf<3>&);
+template void visit_nodes(GrainsOf<3>&, StateVisitor&);
 
 }  // namespace softgrain

@@ -102,8 +102,8 @@ double stable_time_step(const SoftGrains& grains, double safety) {
   }
   double step = std::numeric_limits<double>::infinity();
   for (int k = 0; k < grains.kinds(); ++k)
-    if (const auto& [law, density, rigid] = grains.material(k); !rigid)
-      step = std::min(step, safety * shortest[k] / wave_speed(law, density));
+    if (const GrainMaterial& material = grains.material(k); !material.rigid)
+      step = std::min(step, safety * shortest[k] / wave_speed(material.law, material.density));
   return step;
 }
 

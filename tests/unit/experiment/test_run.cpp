@@ -32,7 +32,7 @@ Simulation countdown(int breaks_at = 0) {
 /// Stops the run after a step.
 struct StopAfter final : Recorder {
   explicit StopAfter(std::int64_t last_step) : last(last_step) {}
-  bool after_step(Simulation& simulation, const StepReport& step, RunReport& run) override {
+  bool after_step(AnySimulation& simulation, const StepReport& step, RunReport& run) override {
     CHECK(step.sweeps == simulation.steps_done());
     seen = run;
     return simulation.steps_done() < last;

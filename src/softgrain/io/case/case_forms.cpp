@@ -26,7 +26,6 @@ FormKey number(std::string name, std::string_view unit, Range range, std::string
 std::vector<FormKey> all_forms() {
   const Range any, positive{.low = 0, .without_low = true};
   return {
-      only("experiment.dimension", "2", "dimensions of space"),
 
       {"kind.name", Takes::text, {}, "name of the kind, for [[pair]], for --set kind.NAME.key=value and for the column kind of a sample's file; several kinds need one each"},
       stands_for("kind.model", {"experiment.model"}, "model of these grains; elastic and rigid kinds mix"),

@@ -10,6 +10,7 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/estimate.hpp"
+#include "softgrain/experiment/solid_case.hpp"
 #include "softgrain/io/case/scope.hpp"
 #include "softgrain/io/case/words.hpp"
 #include "softgrain/material/any_law.hpp"
@@ -267,6 +268,10 @@ const std::vector<Relation>& case_relations() {
       {{"experiment.loading", "loading.confining_stress", "loading.max_stress", "loading.hold",
         "loading.shear_rate"},
        path_incomplete},
+      {{"experiment.dimension", "experiment.model", "experiment.loading", "mpm.integrator", "mpm.formulation",
+        "mpm.law", "mpm.cells", "sample.placed", "box.x", "box.y", "box.gravity_x", "box.gravity_y",
+        "output.report"},
+       not_yet_in_space},
       {{"experiment.loading", "box.x", "box.y", "box.gravity_x", "box.gravity_y"}, box_unfit},
   };
   return relations;

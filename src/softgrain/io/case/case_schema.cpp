@@ -116,7 +116,7 @@ constexpr std::string_view introduction =
     "<!-- Written by `softgrain schema --markdown`; do not edit. -->\n\n"
     "A case is a TOML file. A quantity is written with its unit, as in `\"0.2 m/s\"`, or as a plain number "
     "in SI.\n"
-    "A key that is left out keeps its default. Everything is two-dimensional, per metre of depth.\n\n"
+    "A key that is left out keeps its default. In two dimensions everything is per metre of depth.\n\n"
     "The short form has one kind of grains and one path: `[grain]`, `[sample]`, `[contact]`, `[loading]`. "
     "The long\n"
     "form says the same with `[[kind]]`, `[[pair]]` and `[[stage]]`, at the end of this page, and more: "

@@ -20,9 +20,9 @@ constexpr std::array later_keys{
     LaterKey{"kind.surface", "grains are disks"},
     LaterKey{"pair.restitution", "contact.restitution holds for all pairs"},
     LaterKey{"pair.adhesion", "grains and walls do not stick"},
-    LaterKey{"box.z", "space has two dimensions"},
+    LaterKey{"box.z", "the box of a case in space has walls all round"},
     LaterKey{"box.die_friction", "a [[pair]] between a kind and \"wall\" holds for all walls"},
-    LaterKey{"stage.zz", "space has two dimensions"},
+    LaterKey{"stage.zz", "cases in space know the short paths of [loading] alone"},
 };
 
 bool is_below(std::string_view name, std::string_view above) {

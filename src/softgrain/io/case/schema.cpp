@@ -61,6 +61,9 @@ std::vector<Key> all_keys() {
       KEY(experiment.model, "", its_words(),
           "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other; mpm: an "
           "elastic body by the material point method; rigid: a rigid body, which meets others as those of mpm do"),
+      KEY(experiment.dimension, "", from_to(2, 3),
+          "of space; 2: disks, everything per metre of depth; 3: spheres, of model mpm and not yet all the rest "
+          "(docs/guide/three-dimensions.md)"),
 
       KEY(grain.radius, "mm", positive(), "radius R of the grain", between_walls),
       KEY(grain.density, "kg/m^3", positive(), "density rho; the grain weighs rho pi R^2 per metre of depth"),
@@ -85,8 +88,8 @@ std::vector<Key> all_keys() {
       KEY(bpm.library, "", from_to(1, 1000), "different aggregates of which the grains are copies (in a box)", bpm_in_a_box),
 
       KEY(mpm.law, "", its_words(), "law of the material", with_mpm),
-      KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points, and 4 cells vertices on its outline, a rigid one too", with_outlines),
-      KEY(mpm.integrator, "", its_words(), "backward Euler, or symplectic Euler with lumped masses", total_lagrangian),
+      KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points, and 4 cells vertices on its outline, a rigid one too; in space of its inner cube, 32 cells^3 points, 6 where it is left out", with_outlines),
+      KEY(mpm.integrator, "", its_words(), "backward Euler, or symplectic Euler with lumped masses; in space explicit, also where it is left out", total_lagrangian),
       KEY(mpm.formulation, "", its_words(),
           "total_lagrangian: on a grid that fits the grain; updated_lagrangian: points move through a lattice that is "
           "reset in each step, always explicit, for comparison (diametral)", with_mpm),
@@ -149,8 +152,8 @@ std::vector<Key> all_keys() {
       KEY(sample.seed, "", at_least(0),
           "seed of the random numbers; another seed is another sample of the same grain", with_chance),
       KEY(sample.grains, "", from_to(1, 1e6), "grains in the box", random),
-      KEY(sample.packing_fraction, "", between(0, 1), "undeformed grain area over box area at the start, below 0.8", random),
-      KEY(sample.aspect, "", from_to(1e-4, 1e4), "width over height of the box at the start", random),
+      KEY(sample.packing_fraction, "", between(0, 1), "undeformed grain area (volume in space) over that of the box at the start, below 0.8", random),
+      KEY(sample.aspect, "", from_to(1e-4, 1e4), "width over height of the box at the start; in space its base is a square", random),
       KEY(sample.sizes, "", its_words(),
           "law of the diameters, by number of grains; uniform between smallest and largest; lognormal with a median, cut "
           "off below smallest and above largest; list: sample.diameters; left out: list where diameters are given, lognormal "
@@ -175,7 +178,7 @@ std::vector<Key> all_keys() {
       KEY(output.samples, "", from_to(1, 1e6), "rows of series.csv, evenly over the run"),
       KEY(output.snapshots, "", from_to(0, 1e5), "restart points, evenly over the run"),
       KEY(output.vtk, "", anything(), "write .vtp files for ParaView beside the snapshots"),
-      KEY(output.report, "", anything(), "write report.html, a page to look at in a browser, when the run is done"),
+      KEY(output.report, "", anything(), "write report.html, a page to look at in a browser, when the run is done; in space not yet, and false where it is left out"),
   };
 }
 

@@ -25,7 +25,8 @@ using Datasets = std::map<std::string, Array>;
 
 const std::string checkpoint_group = "/checkpoint/", particle_group = "/scene/particles/",
                   contact_group = "/scene/contacts/", outline_group = "/scene/outlines/",
-                  walls_path = "/scene/walls", cell_path = "/scene/cell", run_group = "/run/";
+                  surface_group = "/scene/surface/", walls_path = "/scene/walls", cell_path = "/scene/cell",
+                  run_group = "/run/";
 
 class Hash {
  public:
@@ -98,6 +99,7 @@ Datasets datasets_of(const Snapshot& snapshot) {
   add(particle_group, snapshot.scene.particles);
   add(contact_group, snapshot.scene.contacts);
   add(outline_group, snapshot.scene.outlines);
+  add(surface_group, snapshot.scene.surface);
   datasets[walls_path] = {4, snapshot.scene.wall_segments};
   if (!snapshot.scene.cell.empty()) datasets[cell_path] = {2, snapshot.scene.cell};
   for_each_total(snapshot.report, snapshot.sums, [&](const char* name, const auto& value) {
@@ -122,6 +124,7 @@ Snapshot snapshot_of(const Datasets& datasets, const std::string& name) {
     snapshot.scene.particles = arrays_of(datasets, particle_group);
     snapshot.scene.contacts = arrays_of(datasets, contact_group);
     snapshot.scene.outlines = arrays_of(datasets, outline_group);
+    snapshot.scene.surface = arrays_of(datasets, surface_group);
     snapshot.scene.wall_segments = std::get<std::vector<double>>(datasets.at(walls_path).values);
     if (const auto cell = datasets.find(cell_path); cell != datasets.end())
       snapshot.scene.cell = std::get<std::vector<double>>(cell->second.values);

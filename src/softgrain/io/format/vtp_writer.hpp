@@ -9,11 +9,14 @@
 
 namespace softgrain {
 
-/// What a .vtp file of ParaView holds: points, and cells: lines between two points, or else every point.
+/// What a .vtp file of ParaView holds: points, and cells: lines between two points, quads, or else every
+/// point.
 struct PolyData {
-  std::vector<double> positions;  ///< x y for each point [m]
+  std::vector<double> positions;  ///< x y for each point, in space x y z [m]
+  std::size_t columns = 2;        ///< of the positions
   bool has_lines = false;
   std::vector<std::int64_t> lines;          ///< pairs of point indices
+  std::vector<std::int64_t> quads;          ///< four point indices each
   std::map<std::string, Array> point_data;  ///< one row per point
   std::map<std::string, Array> cell_data;   ///< one row per cell
 };
@@ -24,12 +27,14 @@ PolyData particles_of(const Scene& scene);
 /// place of contact with a wall.
 PolyData contacts_of(const Scene& scene);
 PolyData walls_of(const Scene& scene);
+/// The outlines of grains in space, as quads.
+PolyData surfaces_of(const Scene& scene);
 
 /// The bytes of a .vtp file: appended raw blocks, zlib, 64 bit headers, reals as float32 with denormal
 /// numbers flushed to zero. Two columns become three (z = 0), as ParaView's vectors.
 std::string encode_vtp(const PolyData& data);
 
-/// Writes particles_, contacts_ and walls_`label`.vtp into the folder.
+/// Writes particles_, contacts_ and walls_`label`.vtp into the folder; in space surfaces_ too.
 void write_scene(const std::filesystem::path& folder, const std::string& label, const Scene& scene);
 
 /// One time of the collection that ParaView opens.
@@ -38,7 +43,7 @@ struct Frame {
   std::string label;  ///< of its files
 };
 
-/// The text of a .pvd file: every frame with its three parts in `folder`.
-std::string pvd_text(const std::vector<Frame>& frames, const std::string& folder);
+/// The text of a .pvd file: every frame with its parts in `folder`, in space with the surfaces.
+std::string pvd_text(const std::vector<Frame>& frames, const std::string& folder, bool in_space = false);
 
 }  // namespace softgrain

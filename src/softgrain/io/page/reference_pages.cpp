@@ -86,8 +86,10 @@ std::string_view word(Role role) {
 }
 
 std::vector<FieldShape> fields_of(GrainModel model, Integrator integrator, Formulation formulation,
-                                  MaterialLaw law = MaterialLaw::neo_hookean) {
+                                  MaterialLaw law = MaterialLaw::neo_hookean, int dimension = 2) {
   Case c;
+  c.experiment.dimension = dimension;
+  c.output.report = false;
   c.mpm.law = law;
   c.mpm.material.yield_stress = 1e5;  // of what flows
   c.experiment.model = model;
@@ -96,7 +98,7 @@ std::vector<FieldShape> fields_of(GrainModel model, Integrator integrator, Formu
   c.mpm.integrator = integrator;
   c.mpm.formulation = formulation;
   StateLister lister;
-  create_simulation(c)->visit(lister);
+  create_any_simulation(c)->visit(lister);
   return lister.fields;
 }
 
@@ -129,7 +131,9 @@ std::string checkpoint_page() {
        fields_of(GrainModel::rigid, backward_euler, total_lagrangian)},
       {"Elastic grains, explicit", fields_of(GrainModel::mpm, symplectic_euler, total_lagrangian)},
       {"Elastic grains, updated Lagrangian",
-       fields_of(GrainModel::mpm, symplectic_euler, updated_lagrangian)}};
+       fields_of(GrainModel::mpm, symplectic_euler, updated_lagrangian)},
+      {"Elastic grains in space",
+       fields_of(GrainModel::mpm, symplectic_euler, total_lagrangian, MaterialLaw::neo_hookean, 3)}};
   std::string text(checkpoint_begin);
   for (const auto& [heading, fields] : models)
     text += fmt::format("\n## {}\n\n{}", heading, table_of(fields));

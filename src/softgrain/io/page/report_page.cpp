@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/format/file.hpp"
 #include "softgrain/io/page/report_codec.hpp"
 #include "softgrain/io/page/report_run.hpp"
@@ -29,6 +30,15 @@ std::string escaped(std::string_view text) {
       html += c;
   }
   return html;
+}
+
+/// Of a run whose case can be read.
+bool is_run_in_space(const RunPaths& paths) {
+  try {
+    return is_in_space(parse_recorded_case(read_file(paths.case_file()), paths.case_file().string()));
+  } catch (const std::exception&) {
+    return false;  // what is wrong with it is told where its frames are read
+  }
 }
 
 /// "squeeze" for out/squeeze, "squeeze/case_run" for the directory that everybody's run has by default; the
@@ -64,6 +74,11 @@ std::vector<std::string> write_report(const std::vector<fs::path>& runs, const f
   std::string title;
   for (const fs::path& directory : runs) {
     const std::string name = name_of(directory, runs);
+    require(!is_run_in_space(RunPaths{directory}),
+            "not yet: the page of {}, a run with experiment.dimension = 3; `softgrain plot` draws it, "
+            "ParaView opens "
+            "its vtk/",
+            directory.string());
     ReportRun run = encode_run(RunPaths{directory}, name);
     payloads.push_back(std::move(run.payload));
     warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());

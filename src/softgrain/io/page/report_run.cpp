@@ -243,7 +243,8 @@ Json provenance(const RunPaths& paths) {
 /// The resolved case as JSON; nothing where there is none that this version reads.
 Json settings_of(const std::string& case_text, const std::string& name) {
   try {
-    return case_text.empty() ? Json::object() : Json::parse(case_json(parse_recorded_case(case_text, name)));
+    if (case_text.empty()) return Json::object();
+    return Json::parse(case_json(parse_recorded_case(case_text, name)));
   } catch (const UsageError&) {
     return Json::object();
   }

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// How many of `count` even shares of the run are over.
-int shares_done(const Simulation& simulation, int count) {
+int shares_done(const AnySimulation& simulation, int count) {
   constexpr double rounding = 1e-9;
   return static_cast<int>(std::floor(simulation.progress() * count + rounding));
 }
@@ -83,7 +83,7 @@ void RunRecorder::log(const std::string& text) {
   if (request_.verbose) progress_.message(text);
 }
 
-void RunRecorder::begin(Simulation& simulation) {
+void RunRecorder::begin(AnySimulation& simulation) {
   write_record(simulation);  // first of all: run.json is what makes this directory a run's
   fs::create_directories(paths_.snapshot_folder());
   if (request_.the_case.output.vtk) fs::create_directories(paths_.vtk_folder());
@@ -123,7 +123,7 @@ void RunRecorder::drop_old_end() {
   if (before.state == "done" && before.step == files.back().step) fs::remove(files.back().path);
 }
 
-RunReport RunRecorder::resume(Simulation& simulation) {
+RunReport RunRecorder::resume(AnySimulation& simulation) {
   const bool same_case =
       !fs::exists(paths_.case_file()) || read_file(paths_.case_file()) == request_.case_text;
   if (!same_case) drop_old_end();
@@ -160,7 +160,7 @@ RunReport RunRecorder::resume(Simulation& simulation) {
   return snapshot.report;
 }
 
-bool RunRecorder::after_step(Simulation& simulation, const StepReport& step, RunReport& run) {
+bool RunRecorder::after_step(AnySimulation& simulation, const StepReport& step, RunReport& run) {
   record_.report = run;
   sums_.add(step);
   if (!step.converged && run.steps - run.steps_converged == 1)
@@ -179,7 +179,7 @@ bool RunRecorder::after_step(Simulation& simulation, const StepReport& step, Run
   return !stop;
 }
 
-void RunRecorder::write_row(Simulation& simulation) {
+void RunRecorder::write_row(AnySimulation& simulation) {
   Observation now = simulation.observe();
   simulation.begin_row();
   now.means = means_of(sums_, wall_seconds());
@@ -190,7 +190,7 @@ void RunRecorder::write_row(Simulation& simulation) {
   rows_due_ = shares_done(simulation, request_.the_case.output.samples);
 }
 
-void RunRecorder::save(const Simulation& simulation) {
+void RunRecorder::save(const AnySimulation& simulation) {
   series_->sync();  // the rows before a snapshot are on the disk when it is
   const fs::path path =
       paths_.snapshot_folder() / snapshot_name(simulation.steps_done(), simulation.steps_planned());
@@ -209,16 +209,17 @@ void RunRecorder::save(const Simulation& simulation) {
   write_record(simulation);
 }
 
-void RunRecorder::save_scene(const Simulation& simulation, const Scene& scene) {
+void RunRecorder::save_scene(const AnySimulation& simulation, const Scene& scene) {
   if (!request_.the_case.output.vtk) return;
   const std::string label = label_of(last_snapshot_);
   write_scene(paths_.vtk_folder(), label, scene);
   frames_.push_back({simulation.time(), label});
-  write_file(paths_.collection_file(), pvd_text(frames_, paths_.vtk_folder().filename().string()),
+  write_file(paths_.collection_file(),
+             pvd_text(frames_, paths_.vtk_folder().filename().string(), is_in_space(request_.the_case)),
              Survives::kill);
 }
 
-void RunRecorder::write_record(const Simulation& simulation) {
+void RunRecorder::write_record(const AnySimulation& simulation) {
   record_.step = simulation.steps_done();
   record_.steps_planned = simulation.steps_planned();
   record_.time = simulation.time();
@@ -228,7 +229,7 @@ void RunRecorder::write_record(const Simulation& simulation) {
   write_file(paths_.run_file(), encode_run_record(record_));
 }
 
-int RunRecorder::end(const Simulation& simulation) {
+int RunRecorder::end(const AnySimulation& simulation) {
   const int signal = signals_.stop_signal();
   const bool done = simulation.finished();
   record_.state = done ? "done" : "stopped";
@@ -254,7 +255,7 @@ void RunRecorder::fail(const std::string& message) {
   }
 }
 
-RunOutcome record_run(Simulation& simulation, const RunDirectory& directory, const RunRequest& request,
+RunOutcome record_run(AnySimulation& simulation, const RunDirectory& directory, const RunRequest& request,
                       Progress& progress, SignalWatch& signals) {
   const bool resuming = request.resume && !list_snapshots(directory.paths()).empty();
   if (!resuming) directory.clear();

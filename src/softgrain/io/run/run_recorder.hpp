@@ -39,15 +39,15 @@ class RunRecorder final : public Recorder {
   /// A line of log.txt.
   void log(const std::string& text);
   /// Writes the first state.
-  void begin(Simulation& simulation);
+  void begin(AnySimulation& simulation);
   /// Restores the newest snapshot that is intact and returns the report up to it; says which ones it skipped
   /// and why. A run that has ended goes further if the case is an extension (why_no_extension) of the one it
   /// was begun with, from the snapshot before its end. Raises IoError when none is intact.
-  RunReport resume(Simulation& simulation);
-  bool after_step(Simulation& simulation, const StepReport& step, RunReport& run) override;
+  RunReport resume(AnySimulation& simulation);
+  bool after_step(AnySimulation& simulation, const StepReport& step, RunReport& run) override;
 
   /// Ends the run as done, or as stopped before its end; returns the program's exit code.
-  int end(const Simulation& simulation);
+  int end(const AnySimulation& simulation);
   /// Ends it as failed; a full disk is no further error.
   void fail(const std::string& message);
 
@@ -60,10 +60,10 @@ class RunRecorder final : public Recorder {
   bool stop_wanted() const;
   void drop_old_end();
   Snapshot newest_intact_snapshot();
-  void write_row(Simulation& simulation);
-  void save(const Simulation& simulation);
-  void save_scene(const Simulation& simulation, const Scene& scene);
-  void write_record(const Simulation& simulation);
+  void write_row(AnySimulation& simulation);
+  void save(const AnySimulation& simulation);
+  void save_scene(const AnySimulation& simulation, const Scene& scene);
+  void write_record(const AnySimulation& simulation);
 
   RunPaths paths_;
   RunRequest request_;
@@ -92,7 +92,7 @@ struct RunOutcome {
 /// Runs the simulation to its end, or until it is asked to stop, with everything written to the directory. A
 /// run that breaks down leaves state "failed" in run.json; its error is raised again, with the last good
 /// snapshot named.
-RunOutcome record_run(Simulation& simulation, const RunDirectory& directory, const RunRequest& request,
+RunOutcome record_run(AnySimulation& simulation, const RunDirectory& directory, const RunRequest& request,
                       Progress& progress, SignalWatch& signals);
 
 }  // namespace softgrain

@@ -104,7 +104,6 @@ TEST_CASE("what comes with later versions is refused by key and line, and says w
     CHECK(mentions(message, today));
     CHECK(mentions(message, "1 error; nothing was run"));
   };
-  check_not_yet("[experiment]\ndimension = 3\n", "2:13", "today it is 2");
   check_not_yet("[[kind]]\nshape = 'ellipse'\n", "2:1", "today these are disks, or of the model \"rigid\"");
   check_not_yet("[[kind]]\nshape = 'outline'\n", "2:9", "today it is one of \"disk\", \"ellipse\"");
   check_not_yet("[box]\ndie_friction = 0.2\n", "2:1", "[[pair]]");

@@ -1,0 +1,84 @@
+"""Grains in space at chosen moments: their surfaces, shaded, in the colour of the pressure behind them."""
+
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.figure import Figure
+
+from .. import NotRecorded, colours
+from .stages import choose_stages
+from .style import DOUBLE_COLUMN, GREY, MM
+
+MOST_PANELS = 4
+HEADING, KEY = 9, 16  # [mm]: above the panels, right of them
+AZIMUTH, ELEVATION = np.radians(-62), np.radians(18)  # from where one looks
+LIGHT = np.array([0.35, -0.75, 0.8]) / np.linalg.norm([0.35, -0.75, 0.8])
+DARKEST = 0.35  # of a face that looks away from the light
+EDGES = ((0, 1), (1, 2), (2, 3), (3, 0))
+
+
+def draw_space(run):
+    """The surfaces of all grains, by parallel projection. Raises NotRecorded where snapshots have none."""
+    snapshots = [(stage, run[stage.snapshot]) for stage in choose_stages(run, run.times)] if len(run) else []
+    snapshots = [(stage, snapshot) for stage, snapshot in snapshots if "quad" in snapshot.surface]
+    if not snapshots:
+        raise NotRecorded("no snapshot has surfaces: those are of runs with experiment.dimension = 3")
+    if len(snapshots) > MOST_PANELS:
+        snapshots = [snapshots[k] for k in np.linspace(0, len(snapshots) - 1, MOST_PANELS).round().astype(int)]
+    pressure = np.concatenate([snapshot.surface["pressure"] for _, snapshot in snapshots]) / 1e6
+    low, high = min(0.0, np.quantile(pressure, 0.01)), max(np.quantile(pressure, 0.99), 1e-12)
+    range_ = colours.Range("viridis", low, high)
+
+    corners = [_project(snapshot.surface["walls"].reshape(-1, 3)) for _, snapshot in snapshots]
+    points = np.concatenate([_project(snapshot.outlines["position"]) for _, snapshot in snapshots] + corners)
+    (x0, y0), (x1, y1) = points[:, :2].min(0), points[:, :2].max(0)
+    width = (DOUBLE_COLUMN - KEY) / len(snapshots)
+    height = min(width * (y1 - y0) / (x1 - x0), 120)
+    figure = Figure(figsize=(DOUBLE_COLUMN * MM, (height + HEADING) * MM))
+    page = DOUBLE_COLUMN, height + HEADING
+    for column, (stage, snapshot) in enumerate(snapshots):
+        axes = figure.add_axes((column * width / page[0], 0, width / page[0], height / page[1]))
+        axes.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal")
+        axes.set_axis_off()
+        _draw_surfaces(axes, snapshot, range_)
+        figure.text((column + 0.5) * width / page[0], 0.99, _heading("abcd"[column], stage), ha="center", va="top")
+    bar = figure.add_axes(((DOUBLE_COLUMN - KEY + 1) / page[0], 0.15, 2.5 / page[0], 0.6))
+    mappable = ScalarMappable(Normalize(low, high), ListedColormap(range_.rgb(np.linspace(low, high, 256))))
+    figure.colorbar(mappable, cax=bar, label="pressure [MPa]")
+    return figure
+
+
+def _draw_surfaces(axes, snapshot, range_):
+    """Faces that look at us, the farthest first; behind them the edges of the walls."""
+    walls = _project(snapshot.surface["walls"].reshape(-1, 3)).reshape(-1, 4, 3)
+    if len(walls) > 2:
+        axes.add_collection(LineCollection([face[list(edge), :2] for face in walls for edge in EDGES], colors=GREY, linewidths=0.4))
+    else:
+        axes.add_collection(PolyCollection(walls[:, :, :2], facecolors="#DDDDDD", edgecolors=GREY, linewidths=0.4))
+    place = snapshot.outlines["position"][snapshot.surface["quad"]]  # (quads, 4, 3)
+    normal = np.cross(place[:, 2] - place[:, 0], place[:, 3] - place[:, 1])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    seen = _project(place.reshape(-1, 3)).reshape(-1, 4, 3)
+    facing = normal @ _directions()[2] > 0
+    order = np.flatnonzero(facing)[np.argsort(seen[facing, :, 2].mean(1))]
+    shade = DARKEST + (1 - DARKEST) * np.clip(normal[order] @ LIGHT, 0, 1)
+    colour = range_.rgb(snapshot.surface["pressure"][order] / 1e6) * shade[:, None]
+    axes.add_collection(PolyCollection(seen[order, :, :2], facecolors=colour, edgecolors=colour, linewidths=0.15))
+
+
+def _directions():
+    """Unit vectors to the right, upwards and towards us."""
+    right = np.array([-np.sin(AZIMUTH), np.cos(AZIMUTH), 0])
+    towards = np.array([np.cos(ELEVATION) * np.cos(AZIMUTH), np.cos(ELEVATION) * np.sin(AZIMUTH), np.sin(ELEVATION)])
+    return np.array([right, np.cross(towards, right), towards])
+
+
+def _project(points):
+    return np.asarray(points) @ _directions().T
+
+
+def _heading(letter, stage):
+    lines = [] if stage.strain is None else [rf"$\varepsilon$ = {stage.strain + 0:.3f}"]
+    lines += [] if stage.stress is None else [rf"$\sigma$ = {stage.stress / 1e6:.3f} MPa"]
+    return f"({letter})  " + "\n".join(lines)

@@ -1,0 +1,14 @@
+#pragma once
+#include <string>
+
+#include "softgrain/experiment/case.hpp"
+
+namespace softgrain {
+
+/// What a case in space asks for that is not there yet, for the user; "" if nothing, and in the plane.
+std::string not_yet_in_space(const Case& the_case);
+
+/// The longest time step [s] with which a run of a case in space is stable from its start on.
+double longest_solid_step(const Case& the_case);
+
+}  // namespace softgrain

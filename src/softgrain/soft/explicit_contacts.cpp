@@ -1,0 +1,111 @@
+#include <algorithm>
+
+#include "softgrain/core/parallel.hpp"
+#include "softgrain/soft/contact_work.hpp"
+#include "softgrain/soft/explicit_step.hpp"
+#include "softgrain/soft/pressed_walls.hpp"
+#include "softgrain/soft/wall_couple.hpp"
+
+// What an explicit step does with contacts.
+
+namespace softgrain {
+namespace {
+
+/// Contacts are looked for up to this gap at the end of the free flight, in units of a segment of the
+/// outline: the impulses of a stable step move a vertex by a few hundredths of it.
+constexpr double contact_margin = 0.1;
+
+/// Contacts that a thread takes at once.
+constexpr int contacts_at_once = 256;
+
+/// In space contacts keep their places for so many sub-steps, in which vertices come together by less than
+/// the margin.
+constexpr int sub_steps_per_search = 8;
+
+}  // namespace
+
+/// Where x + dt v will be.
+template <int Dim>
+void ExplicitStep<Dim>::find_contacts(double dt) {
+  fly_outline(dt);
+  box.advance(dt);
+  outline_.walls = box.walls;
+  outline_.cell = box.cell;
+  outline_.dt = dt;
+  if (impulse_time > 0 && impulse_time != dt)
+    for (Vec<Dim>& p : impulse) p *= dt / impulse_time;  // the same force
+  if constexpr (Dim == 3) {
+    if (stable.until_search > 0) {
+      --stable.until_search;
+      const int count = static_cast<int>(contacts.size());
+      parallel_for((count + contacts_at_once - 1) / contacts_at_once, [&](int k) {
+        for (int c = k * contacts_at_once; c < std::min(count, (k + 1) * contacts_at_once); ++c)
+          update_gap(contacts[c], outline_);
+      });
+      return;
+    }
+    stable.until_search = sub_steps_per_search - 1;
+  }
+  std::vector<ContactOf<Dim>> found = neighbours_.detect(grains, outline_, contact_margin);
+  impulse = carried_impulses(grains, contacts, impulse, found);
+  contacts = std::move(found);
+}
+
+/// Of grains that frictionless walls alone touch: what they gave in the step before.
+template <int Dim>
+void ExplicitStep<Dim>::take_back_spin() {
+  if constexpr (Dim == 2) {
+    const std::vector<Wide> alone = grains_on_smooth_walls_alone(grains, contacts, friction_by_kind());
+    if (std::none_of(alone.begin(), alone.end(), [](const Wide& of_batch) { return any(of_batch > 0.0); }))
+      return;
+    grains.gather_outline(outline_.start);
+    work.contacts -= turn_back(grains, alone, contacts, impulse, outline_.start);
+  }
+}
+
+/// Of the contacts that carry impulse, over the smallest radius.
+template <int Dim>
+void ExplicitStep<Dim>::add_overlaps(SoftStepReport& report) const {
+  const int count = static_cast<int>(contacts.size());
+  struct Depths {
+    double deepest = 0, sum = 0;
+    int carrying = 0;
+  };
+  std::vector<Depths> depths((count + contacts_at_once - 1) / contacts_at_once);
+  parallel_for(static_cast<int>(depths.size()), [&](int k) {
+    for (int c = k * contacts_at_once; c < std::min(count, (k + 1) * contacts_at_once); ++c) {
+      if (impulse[c][0] == 0) continue;
+      const double depth = std::max(0.0, -gap_now(contacts[c], outline_));
+      depths[k].deepest = std::max(depths[k].deepest, depth);
+      depths[k].sum += depth;
+      ++depths[k].carrying;
+    }
+  });
+  Depths all;
+  for (const Depths& part : depths) {
+    all.deepest = std::max(all.deepest, part.deepest);
+    all.sum += part.sum;
+    all.carrying += part.carrying;
+  }
+  report.overlap_max = std::max(report.overlap_max, all.deepest / smallest_radius_);
+  report.overlap_mean = all.carrying > 0 ? all.sum / all.carrying / smallest_radius_ : 0;
+}
+
+template <int Dim>
+void ExplicitStep<Dim>::add_contact_work(double dt) {
+  for (std::size_t v = 0; v < outline_velocity_.size(); ++v)  // moved by (v+ + v)/2 dt
+    outline_.position[v] = outline_.start[v] + dt / 2 * (outline_velocity_[v] + outline_velocity_start_[v]);
+  for (const Press& press : box.presses)
+    for (std::size_t w = 0; w < box.walls.size(); ++w)
+      if (press.share[w] != 0)
+        outline_.walls[w].velocity =
+            0.5 * (box.walls[w].velocity + (press.share[w] * press.speed) * box.walls[w].normal);
+  softgrain::add_contact_work<Dim>(contacts, impulse, outline_, work, box.impulse);
+  outline_.walls = box.walls;
+  end_step_of_presses(box, contacts, impulse, dt);
+}
+
+template class ExplicitStep<2>;
+template class ExplicitStep<3>;
+
+}  // namespace softgrain

@@ -1,0 +1,179 @@
+#include <cmath>
+#include <cstdint>
+#include <variant>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/material/elastic_law.hpp"
+#include "softgrain/soft/soft_view.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Forces of contacts on the outlines' vertices [N].
+std::vector<Vec<3>> forces_on_vertices(const SoftViewOf<3>& view) {
+  std::vector<Vec<3>> force(view.grains.outline_size());
+  for (std::size_t c = 0; c < view.contacts.size(); ++c) {
+    if (!(view.impulse[c][0] > 0)) continue;
+    const Vec<3> f = (1 / view.impulse_time) * impulse_vector(view.contacts[c], view.impulse[c]);
+    view.contacts[c].for_each_vertex([&](int vertex, double weight) { force[vertex] += weight * f; });
+  }
+  return force;
+}
+
+/// Pressure -tr(sigma)/3 of a law at F, compression positive [Pa].
+double pressure_at(const AnyLaw& any, const Mat<3>& F) {
+  return std::visit(
+      [&]<class Law>(const Law& law) {
+        if constexpr (SplitLaw<Law, 3>)
+          return -contract(law.stress(F), F) / (3 * determinant(F));
+        else
+          return 0.0;
+      },
+      any);
+}
+
+/// Pressure in the cell behind each quad of a grain, in the mean: the last cells of the grid, in the order of
+/// the quads [Pa].
+std::vector<double> skin_pressures(const SolidGrains& grains, int grain) {
+  const SolidTopology& shape = grains.topology(grain);
+  const AnyLaw& law = grains.material(grains.kind(grain)).law;
+  std::vector<double> pressures;
+  for (std::size_t c = shape.grid.cell.size() - shape.grid.quad.size(); c < shape.grid.cell.size(); ++c) {
+    double sum = 0;
+    for (std::size_t p = 8 * c; p < 8 * c + 8; ++p) {
+      Mat<3> F;
+      for (std::size_t a = 0; a < 8; ++a) {
+        const Vec<3> x = (1 / grains.radius(grain)) * grains.node_position(grain, shape.grid.cell[c][a]);
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) F(i, j) += x[i] * shape.points[p].gradient[a][j];
+      }
+      sum += pressure_at(law, F) / 8;
+    }
+    pressures.push_back(sum);
+  }
+  return pressures;
+}
+
+constexpr std::size_t masters = 16, bodies_of_contact = 3 + masters;
+
+void check_bodies_in_space(std::span<const std::int64_t> bodies, int points, int vertices, int walls) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const std::size_t k = i % bodies_of_contact;
+    const int most = k == 0 ? points : k == 2 ? walls : vertices;
+    if (bodies[i] < (k == 2 ? -1 : 0) || bodies[i] >= most)
+      throw IoError(fmt::format("the snapshot's array 'contact_bodies' holds {}", bodies[i]));
+  }
+}
+
+}  // namespace
+
+std::vector<ContactPointOf<3>> contact_points(const SoftViewOf<3>& view) {
+  const SolidGrains& grains = view.grains;
+  std::vector<Vec<3>> x;
+  grains.gather_outline(x);
+  std::vector<ContactPointOf<3>> points;
+  for (std::size_t c = 0; c < view.contacts.size(); ++c) {
+    const SurfaceContact& contact = view.contacts[c];
+    if (!(view.impulse[c][0] > 0)) continue;
+    Vec<3> place = x[contact.vertex];
+    if (contact.wall >= 0 && !contact.is_vertex_at_wall()) {
+      place = {};
+      contact.for_each_vertex([&](int v, double weight) { place += weight * x[v]; });
+    }
+    points.push_back(
+        {.a = grains.grain_of_vertex(contact.vertex),
+         .b = contact.wall >= 0 ? wall_index(contact.wall) : grains.grain_of_vertex(contact.master[5]),
+         .force = (-1 / view.impulse_time) * impulse_vector(contact, view.impulse[c]),
+         .normal = Vec<3>{} - contact.normal,
+         .position = place});
+  }
+  return points;
+}
+
+std::vector<SurfaceMeasure> outlines_of(const SolidGrains& grains) {
+  std::vector<Vec<3>> x;
+  grains.gather_outline(x);
+  std::vector<SurfaceMeasure> measures;
+  for (int g = 0; g < grains.size(); ++g) {
+    const SolidTopology& shape = grains.topology(g);
+    SurfaceMeasure measure = measure_surface(shape.patches, &x[grains.outline_begin(g)]);
+    measure.volume *= shape.patch_fullness;
+    measure.area *= std::pow(shape.patch_fullness, 2.0 / 3);
+    measures.push_back(measure);
+  }
+  return measures;
+}
+
+Scene soft_scene(const SoftViewOf<3>& view) {
+  const SolidGrains& grains = view.grains;
+  std::vector<Vec<3>> outline;
+  grains.gather_outline(outline);
+  std::vector<double> radius, pressure;
+  std::vector<std::int64_t> grain, grain_of_vertex, quads, grain_of_quad;
+  for (int g = 0; g < grains.size(); ++g) {
+    grain.push_back(g);
+    radius.push_back(grains.radius(g));
+    const int begin = grains.outline_begin(g), first = grains.topology(g).grid.outline_begin;
+    grain_of_vertex.insert(grain_of_vertex.end(), grains.outline_end(g) - begin, g);
+    for (const auto& quad : grains.topology(g).grid.quad)
+      for (const int node : quad) quads.push_back(begin + node - first);
+    grain_of_quad.insert(grain_of_quad.end(), grains.topology(g).grid.quad.size(), g);
+    const std::vector<double> of_grain = skin_pressures(grains, g);
+    pressure.insert(pressure.end(), of_grain.begin(), of_grain.end());
+  }
+  Scene scene;
+  scene.particles["position"] = to_array(centres_of(grains));
+  scene.particles["radius"] = {1, std::move(radius)};
+  scene.particles["grain"] = {1, std::move(grain)};
+  scene.outlines["position"] = to_array(outline);
+  scene.outlines["force"] = to_array(forces_on_vertices(view));
+  scene.outlines["grain"] = {1, std::move(grain_of_vertex)};
+  scene.surface["quad"] = {4, std::move(quads)};
+  scene.surface["grain"] = {1, std::move(grain_of_quad)};
+  scene.surface["pressure"] = {1, std::move(pressure)};
+  scene.contacts = grain_contacts(contact_points(view), grains.size());
+  return scene;
+}
+
+void visit_contacts(const SolidGrains& grains, int walls, bool, std::vector<SurfaceContact>& contacts,
+                    std::vector<Vec<3>>& impulse, StateVisitor& visit) {
+  std::vector<std::int64_t> bodies;
+  std::vector<Vec<4 + masters>> places;
+  for (const SurfaceContact& c : contacts) {
+    bodies.insert(bodies.end(), {c.point, c.vertex, c.wall});
+    bodies.insert(bodies.end(), c.master.begin(), c.master.end());
+    Vec<4 + masters> place{c.normal[0], c.normal[1], c.normal[2], c.gap};
+    for (std::size_t k = 0; k < masters; ++k) place[static_cast<int>(4 + k)] = c.weight[k];
+    places.push_back(place);
+  }
+  visit.list(
+      {"contact_bodies", "", Owner::contact, Role::start,
+       "vertex, wall or -1, four master vertices; in space point, vertex, wall or -1, 16 of the patch"},
+      bodies, bodies_of_contact);
+  visit.list(
+      {"contact_places", "", Owner::contact, Role::start,
+       "share, normal (2), gap [m], slip [m]; in space normal (3), gap [m], weights of the patch (16)"},
+      places);
+  visit.list({"contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t)"}, impulse);
+  if (!visit.reads()) return;
+  int patches = 0;
+  for (int g = 0; g < grains.size(); ++g) patches += static_cast<int>(grains.topology(g).patches.size());
+  check_bodies_in_space(bodies, grains.outline_size() + patches, grains.outline_size(), walls);
+  if (places.size() != impulse.size() || bodies.size() != bodies_of_contact * places.size())
+    throw IoError("the snapshot's arrays of contacts have different lengths");
+  contacts.clear();
+  for (std::size_t c = 0; c < places.size(); ++c) {
+    const auto body = [&](std::size_t k) { return static_cast<int>(bodies[bodies_of_contact * c + k]); };
+    const auto& place = places[c];
+    SurfaceContact contact{.point = body(0), .vertex = body(1), .wall = body(2)};
+    contact.normal = {place[0], place[1], place[2]};
+    contact.gap = place[3];
+    for (std::size_t k = 0; k < masters; ++k) {
+      contact.master[k] = body(3 + k);
+      contact.weight[k] = place[static_cast<int>(4 + k)];
+    }
+    contacts.push_back(contact);
+  }
+}
+
+}  // namespace softgrain

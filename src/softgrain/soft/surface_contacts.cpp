@@ -1,0 +1,231 @@
+#include "softgrain/soft/surface_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "softgrain/core/parallel.hpp"
+#include "softgrain/geometry/cell_grid.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Vertices, or middles of patches, that a thread takes at once.
+constexpr int points_at_once = 256;
+
+/// The grains' patches, and what is looked up for all of them.
+struct Surfaces {
+  explicit Surfaces(const SolidGrains& all, const OutlineStateOf<3>& now) : grains(all), state(now) {
+    for (int g = 0; g < grains.size(); ++g) {
+      const auto& patches = grains.topology(g).patches;
+      const int vertices = grains.outline_end(g) - grains.outline_begin(g);
+      segment += std::sqrt(4 * std::numbers::pi / vertices) * grains.radius(g) / grains.size();
+      patch_begin.push_back(patch_begin.back() + static_cast<int>(patches.size()));
+      const Vec<3>* x = first_of(g);
+      for (const PatchNet& net : patches) {  // half of the longer diagonal of the quad
+        const auto corner = [&](std::size_t k) { return x[net.vertex[k]]; };
+        reach = std::max({reach, norm(corner(10) - corner(5)) / 2, norm(corner(6) - corner(9)) / 2});
+      }
+    }
+  }
+  const Vec<3>* first_of(int grain) const { return &state.position[grains.outline_begin(grain)]; }
+  SurfacePatch patch(int grain, int index) const {
+    return {grains.topology(grain).patches[index], first_of(grain)};
+  }
+
+  const SolidGrains& grains;
+  const OutlineStateOf<3>& state;
+  std::vector<int> patch_begin{0};  // (grains + 1)
+  double segment = 0;               // mean distance of vertices of round grains [m]
+  double reach = 0;                 // from a place on a patch to its nearest vertex, at most [m]
+};
+
+/// Takes over the net's vertices with their weights.
+void set_master(SurfaceContact& contact, const PatchNet& net, int first_vertex, double u, double v) {
+  contact.weight = patch_weights(net, u, v);
+  for (std::size_t k = 0; k < 16; ++k) contact.master[k] = first_vertex + net.vertex[k];
+}
+
+/// A patch round a vertex, and how far x lies within it: the smaller of its two coordinates from the vertex.
+struct FacingPatch {
+  int patch = 0;
+  double u = 0, v = 0;  // of the vertex
+  double within = 0;
+};
+
+/// The patches round a vertex, the one that x faces first.
+std::vector<FacingPatch> patches_facing(const Surfaces& surfaces, int grain, int vertex, const Vec<3>& x) {
+  const SolidTopology& topology = surfaces.grains.topology(grain);
+  const int begin = surfaces.grains.outline_begin(grain), local = vertex - begin;
+  const Vec<3>* position = surfaces.first_of(grain);
+  const Vec<3> d = x - position[local];
+  constexpr std::array<std::size_t, 4> around{5, 9, 10, 6};  // P_11, P_21, P_22, P_12
+  std::vector<FacingPatch> facing;
+  for (const int q : topology.quads_round[local]) {
+    if (q < 0) continue;
+    const auto& net = topology.patches[q].vertex;
+    std::size_t k = 0;
+    while (net[around[k]] != local) ++k;
+    const Vec<3> a = position[net[around[(k + 1) % 4]]] - position[local],
+                 b = position[net[around[(k + 3) % 4]]] - position[local];
+    const double aa = dot(a, a), ab = dot(a, b), bb = dot(b, b), da = dot(d, a), db = dot(d, b);
+    facing.push_back({.patch = q,
+                      .u = k == 1 || k == 2 ? 1.0 : 0.0,
+                      .v = k >= 2 ? 1.0 : 0.0,
+                      .within = std::min(bb * da - ab * db, aa * db - ab * da) / (aa * bb - ab * ab)});
+  }
+  std::stable_sort(facing.begin(), facing.end(),
+                   [](const FacingPatch& p, const FacingPatch& q) { return p.within > q.within; });
+  return facing;
+}
+
+/// Where the point `vertex` faces a grain, of which the vertex `nearest` is nearest to it.
+SurfaceContact contact_with_patch(const Surfaces& surfaces, int vertex, int grain, int nearest) {
+  const Vec<3>& x = surfaces.state.position[vertex];
+  SurfaceContact contact{.point = vertex, .vertex = vertex};
+  double least = std::numeric_limits<double>::infinity();
+  for (const FacingPatch& facing : patches_facing(surfaces, grain, nearest, x)) {
+    const SurfacePatch patch = surfaces.patch(grain, facing.patch);
+    const auto found = patch.nearest(x, std::abs(facing.u - 0.3), std::abs(facing.v - 0.3));
+    const auto place = patch.at(found.u, found.v);
+    const Vec<3> d = x - place.place;
+    if (dot(d, d) >= least) continue;
+    least = dot(d, d);
+    contact.normal = place.normal();
+    contact.gap = dot(d, contact.normal);
+    set_master(contact, surfaces.grains.topology(grain).patches[facing.patch],
+               surfaces.grains.outline_begin(grain), found.u, found.v);
+    if (found.inside) break;
+  }
+  return contact;
+}
+
+/// The vertex of each other grain nearest to vertex v, within the reach; sorted by grain.
+struct NearestVertex {
+  int grain, vertex;
+  double distance_squared;
+};
+void find_nearest(const Surfaces& surfaces, const CellGrid<3>& grid, double reach, int v,
+                  std::vector<NearestVertex>& near) {
+  near.clear();
+  const int grain = surfaces.grains.grain_of_vertex(v);
+  const auto& position = surfaces.state.position;
+  grid.for_each_neighbour(v, [&](int w) {
+    const int other = surfaces.grains.grain_of_vertex(w);
+    if (other == grain) return;
+    const Vec<3> d = position[w] - position[v];
+    const double distance_squared = dot(d, d);
+    if (distance_squared > reach * reach) return;
+    const auto found =
+        std::find_if(near.begin(), near.end(), [&](const NearestVertex& n) { return n.grain == other; });
+    if (found == near.end())
+      near.push_back({other, w, distance_squared});
+    else if (std::pair(distance_squared, w) < std::pair(found->distance_squared, found->vertex))
+      *found = {other, w, distance_squared};
+  });
+  std::sort(near.begin(), near.end(),
+            [](const NearestVertex& a, const NearestVertex& b) { return a.grain < b.grain; });
+}
+
+void add_wall_contacts(const Surfaces& surfaces, SurfaceContact contact, double margin,
+                       std::vector<SurfaceContact>& contacts) {
+  for (int w = 0; w < static_cast<int>(surfaces.state.walls.size()); ++w) {
+    contact.wall = w;
+    contact.normal = surfaces.state.walls[w].normal;
+    update_gap(contact, surfaces.state);
+    if (contact.gap < margin) contacts.push_back(contact);
+  }
+}
+
+/// Those of one vertex.
+void add_contacts_of_vertex(const Surfaces& surfaces, const CellGrid<3>& grid, double margin, int v,
+                            std::vector<NearestVertex>& near, std::vector<SurfaceContact>& contacts) {
+  add_wall_contacts(surfaces, {.point = v, .vertex = v}, margin, contacts);
+  find_nearest(surfaces, grid, surfaces.reach + margin, v, near);
+  for (const NearestVertex& nearest : near) {
+    const SurfaceContact contact = contact_with_patch(surfaces, v, nearest.grain, nearest.vertex);
+    if (contact.gap < margin) contacts.push_back(contact);
+  }
+}
+
+/// Those of the middle of one patch, with walls.
+void add_contacts_of_patch(const Surfaces& surfaces, double margin, int patch,
+                           std::vector<SurfaceContact>& contacts) {
+  const auto next = std::upper_bound(surfaces.patch_begin.begin(), surfaces.patch_begin.end(), patch);
+  const int grain = static_cast<int>(next - surfaces.patch_begin.begin()) - 1;
+  const PatchNet& net = surfaces.grains.topology(grain).patches[patch - surfaces.patch_begin[grain]];
+  const int begin = surfaces.grains.outline_begin(grain);
+  SurfaceContact contact{.point = surfaces.grains.outline_size() + patch, .vertex = begin + net.vertex[5]};
+  set_master(contact, net, begin, 0.5, 0.5);
+  add_wall_contacts(surfaces, contact, margin, contacts);
+}
+
+/// add(i, list) for i = 0 .. count - 1 on all threads; the lists one after the other.
+template <class Add>
+void append_in_parallel(int count, std::vector<SurfaceContact>& contacts, const Add& add) {
+  std::vector<std::vector<SurfaceContact>> parts((count + points_at_once - 1) / points_at_once);
+  parallel_for(static_cast<int>(parts.size()), [&](int k) {
+    for (int i = k * points_at_once; i < std::min(count, (k + 1) * points_at_once); ++i) add(i, parts[k]);
+  });
+  for (const auto& part : parts) contacts.insert(contacts.end(), part.begin(), part.end());
+}
+
+}  // namespace
+
+std::vector<SurfaceContact> SurfaceNeighbours::detect(const SolidGrains& grains,
+                                                      const OutlineStateOf<3>& state, double margin) const {
+  const Surfaces surfaces(grains, state);
+  const double gap = margin * surfaces.segment;
+  const CellGrid<3> grid(state.position, surfaces.reach + gap);
+  std::vector<SurfaceContact> contacts;
+  append_in_parallel(grains.outline_size(), contacts, [&](int v, std::vector<SurfaceContact>& list) {
+    thread_local std::vector<NearestVertex> near;
+    add_contacts_of_vertex(surfaces, grid, gap, v, near, list);
+  });
+  if (!state.walls.empty())
+    append_in_parallel(surfaces.patch_begin.back(), contacts, [&](int q, std::vector<SurfaceContact>& list) {
+      add_contacts_of_patch(surfaces, gap, q, list);
+    });
+  return contacts;
+}
+
+double gap_now(const SurfaceContact& contact, const OutlineStateOf<3>& state) {
+  Vec<3> apart;
+  if (contact.wall >= 0) apart -= state.walls[contact.wall].point;
+  contact.for_each_vertex([&](int v, double weight) { apart += weight * state.position[v]; });
+  return dot(apart, contact.normal);
+}
+
+void update_gap(SurfaceContact& contact, const OutlineStateOf<3>& state) {
+  contact.gap = gap_now(contact, state);
+}
+
+Vec<3> relative_displacement(const SurfaceContact& contact, const OutlineStateOf<3>& state) {
+  Vec<3> displacement;
+  if (contact.wall >= 0) displacement -= state.dt * state.walls[contact.wall].velocity;
+  contact.for_each_vertex(
+      [&](int v, double weight) { displacement += weight * (state.position[v] - state.start[v]); });
+  return displacement;
+}
+
+std::vector<Vec<3>> carried_impulses(const SolidGrains& grains, std::span<const SurfaceContact> old,
+                                     std::span<const Vec<3>> old_impulse,
+                                     std::span<const SurfaceContact> contacts) {
+  std::vector<Vec<3>> impulse(contacts.size());
+  const auto same = [&](const SurfaceContact& a, const SurfaceContact& b) {
+    if (a.wall >= 0 || b.wall >= 0) return a.wall == b.wall;
+    return grains.grain_of_vertex(a.master[5]) == grains.grain_of_vertex(b.master[5]);
+  };
+  std::size_t first = 0;  // old contact of the same point: both lists are sorted by it
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    while (first < old.size() && old[first].point < contacts[c].point) ++first;
+    for (std::size_t k = first; k < old.size() && old[k].point == contacts[c].point; ++k)
+      if (old_impulse[k][0] > 0 && same(old[k], contacts[c]))
+        impulse[c] = to_local(contacts[c].normal, impulse_vector(old[k], old_impulse[k]));
+  }
+  return impulse;
+}
+
+}  // namespace softgrain

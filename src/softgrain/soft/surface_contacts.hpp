@@ -1,0 +1,73 @@
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "softgrain/contact/tangents.hpp"
+#include "softgrain/soft/outline_state.hpp"
+#include "softgrain/soft/solid_equilibrium.hpp"
+
+namespace softgrain {
+
+/// A point of a grain in space against another grain's outline (the master), or against a wall. Both grains
+/// of a pair bring their vertices; to walls a grain brings the middles of its patches too, since a wall is no
+/// finer than what meets it.
+///
+/// Place and normal on the master are those where the contact was found. Until it is looked for again they
+/// stay, and with them the weights: the gap n . sum weight x is linear in the vertices, so that impulses with
+/// these weights do the work of the gap, and contact makes no energy.
+struct SurfaceContact {
+  /// Number of the point: an outline vertex, or behind all of these the patch whose middle it is
+  int point = 0;
+  int vertex = 0;  ///< the point itself, or a corner of its patch
+  int wall = -1;   ///< or -1
+  /// vertices of the patch that it faces, or of its own, with their weights
+  std::array<int, 16> master{};
+  std::array<double, 16> weight{};
+  Vec<3> normal{};        ///< unit, from the master or wall to the point
+  double gap = 0;         ///< [m], open > 0
+  Vec<3> image_motion{};  ///< none: there are no periodic cells in space yet
+
+  bool is_vertex_at_wall() const { return wall >= 0 && point == vertex; }
+  /// visit(vertex, weight) for all vertices that take part: dg = n . sum weight dx.
+  template <class Visit>
+  void for_each_vertex(Visit&& visit) const {
+    if (wall < 0 || point == vertex) visit(vertex, 1.0);
+    if (is_vertex_at_wall()) return;
+    const double sign = wall >= 0 ? 1 : -1;
+    for (std::size_t k = 0; k < 16; ++k)
+      if (weight[k] != 0) visit(master[k], sign * weight[k]);
+  }
+};
+
+/// Finds the contacts of outlines in space. It remembers nothing, so that whoever goes on from a snapshot
+/// finds the same.
+class SurfaceNeighbours {
+ public:
+  /// All contacts with gap < margin, sorted by (point, master grain or wall); the margin is in units of
+  /// segment_length of the grains, in the mean. Cost O(vertices).
+  std::vector<SurfaceContact> detect(const SolidGrains& grains, const OutlineStateOf<3>& state,
+                                     double margin) const;
+};
+
+/// Brings the gap of a contact up to where its vertices are now.
+void update_gap(SurfaceContact& contact, const OutlineStateOf<3>& state);
+
+/// Gap of a contact when its bodies have moved a little since it was found [m].
+double gap_now(const SurfaceContact& contact, const OutlineStateOf<3>& state);
+
+/// p_n n + p_t t [N s], on the point.
+inline Vec<3> impulse_vector(const SurfaceContact& contact, const Vec<3>& impulse) {
+  return from_local(contact.normal, impulse);
+}
+
+/// Displacement of the point since the start of the step, less that of the place or wall that it faces [m].
+Vec<3> relative_displacement(const SurfaceContact& contact, const OutlineStateOf<3>& state);
+
+/// Impulses of `old` contacts [N s], given to the new contacts of the same point and master grain or wall.
+/// Both lists are sorted by point.
+std::vector<Vec<3>> carried_impulses(const SolidGrains& grains, std::span<const SurfaceContact> old,
+                                     std::span<const Vec<3>> old_impulse,
+                                     std::span<const SurfaceContact> contacts);
+
+}  // namespace softgrain

@@ -1,0 +1,59 @@
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "softgrain/math/vec.hpp"
+#include "softgrain/observe/surface_measure.hpp"
+
+namespace softgrain {
+
+/// The outline of a grain in space is the smooth surface through its vertices that the curve of the plane
+/// makes with itself: over a quad, and the net of 4 x 4 vertices round it,
+///   c(u, v) = sum_ij w_i(u) w_j(v) P_ij,  w = curve_weights,  u, v in [0, 1],
+/// P_11, P_21, P_22, P_12 the quad, counter-clockwise. At a vertex of valence 3, which turns into P_11, the
+/// net lacks P_01, P_10 and P_00. With the vertex' third neighbour C
+///   P_01 = 3/4 (P_12 + C) - 1/2 P_11,  P_10 = 3/4 (P_21 + C) - 1/2 P_11,
+/// and P_00 such that the net's twist changes as little as it can. All is linear in the vertices.
+struct PatchNet {
+  std::array<int, 16> vertex{};  ///< P_ij at 4 i + j; with ghosts C at 0 and P_11 at 1 and 4
+  bool ghosts = false;           ///< P_11 has valence 3
+};
+
+/// Nets of all quads of a closed outline, whose vertices have valence 4 or 3, two of valence 3 never in one
+/// quad. quads: vertices, counter-clockwise seen from outside; quads_round: as SolidTopology has them.
+std::vector<PatchNet> patch_nets(std::span<const std::array<int, 4>> quads,
+                                 std::span<const std::array<int, 4>> quads_round);
+
+/// Weights of the net's vertices in c(u, v); they add up to 1.
+std::array<double, 16> patch_weights(const PatchNet& net, double u, double v);
+
+/// A patch in its present shape.
+class SurfacePatch {
+ public:
+  /// position: from the grain's first outline vertex on [m].
+  SurfacePatch(const PatchNet& net, const Vec<3>* position);
+
+  /// c, dc/du and dc/dv [m].
+  struct Point {
+    Vec<3> place, along_u, along_v;
+    Vec<3> normal() const;  ///< unit, outwards
+  };
+  Point at(double u, double v) const;
+
+  /// The place of the patch nearest to x, from (u, v) on.
+  struct Nearest {
+    double u = 0, v = 0;
+    bool inside = true;  ///< (c - x) is normal to the patch; else the place is on its border
+  };
+  Nearest nearest(const Vec<3>& x, double u, double v) const;
+
+ private:
+  std::array<Vec<3>, 16> net_;
+};
+
+/// Volume and area of a closed outline in its present shape, by 3 x 3 Gauss points of each patch:
+///   V = 1/3 sum c . (dc/du x dc/dv), A = sum |dc/du x dc/dv|.
+SurfaceMeasure measure_surface(std::span<const PatchNet> patches, const Vec<3>* position);
+
+}  // namespace softgrain

@@ -1,0 +1,139 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "softgrain/soft/solid_topology.hpp"
+#include "support/solid_grains.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+std::vector<Vec<3>> outline_of(const SolidTopology& ball) {
+  return {ball.grid.node.begin() + ball.grid.outline_begin, ball.grid.node.end()};
+}
+
+/// Two balls on each other along z, their centres 2 - 2 d apart, with the state that contacts are found in.
+struct TwoBalls {
+  SolidGrains grains;
+  OutlineStateOf<3> state;
+
+  explicit TwoBalls(double d, int n = 4) : grains(pair_of(d, n)), state() {
+    grains.gather_outline(state.position);
+    state.start = state.position;
+    state.dt = 1;
+  }
+  static SolidGrains pair_of(double d, int n) {
+    const auto shape = test::ball(n);
+    return {{{.topology = shape, .radius = 1, .centre = {}, .velocity = {}},
+             {.topology = shape,
+              .radius = 1,
+              .centre = {0, 0, 2 - 2 * d},
+              .angle = test::some_turn(1),
+              .velocity = {}}},
+            {GrainMaterial{make_law(MaterialLaw::neo_hookean, 1, 0.45), 1}}};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the smooth outline of a ball is the sphere") {
+  const SolidTopology ball(ball_grid(6));
+  const std::vector<Vec<3>> x = outline_of(ball);
+  double squares = 0, count = 0;
+  for (const PatchNet& net : ball.patches) {
+    const SurfacePatch patch(net, x.data());
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) {
+        const auto c = patch.at((i + 0.5) / 6, (j + 0.5) / 6);
+        squares += std::pow(norm(c.place) - 1, 2), count += 1;
+        CHECK(dot(c.normal(), c.place) > 0.99);
+      }
+  }
+  CHECK(std::sqrt(squares / count) < 5e-4);
+  const SurfaceMeasure measure = measure_surface(ball.patches, x.data());
+  CHECK(measure.volume == doctest::Approx(4 * std::numbers::pi / 3).epsilon(6e-4));
+  CHECK(measure.area == doctest::Approx(4 * std::numbers::pi).epsilon(1e-3));
+}
+
+TEST_CASE(
+    "a patch of the smooth outline is linear in its vertices: flat nets are flat, weights add up to 1") {
+  const SolidTopology ball(ball_grid(4));
+  std::vector<Vec<3>> x = outline_of(ball);
+  for (Vec<3>& vertex : x) vertex[2] = 0.3 * vertex[0] - 0.2 * vertex[1] + 1;
+  int ghosts = 0;
+  for (const PatchNet& net : ball.patches) {
+    ghosts += net.ghosts ? 1 : 0;
+    const SurfacePatch patch(net, x.data());
+    for (const double u : {0.0, 0.3, 1.0})
+      for (const double v : {0.1, 0.8}) {
+        const Vec<3> c = patch.at(u, v).place;
+        CHECK(c[2] == doctest::Approx(0.3 * c[0] - 0.2 * c[1] + 1).epsilon(1e-14));
+        const auto weights = patch_weights(net, u, v);
+        Vec<3> by_weights;
+        double sum = 0;
+        for (std::size_t k = 0; k < 16; ++k)
+          by_weights += weights[k] * x[static_cast<std::size_t>(net.vertex[k])], sum += weights[k];
+        CHECK(sum == doctest::Approx(1).epsilon(1e-14));
+        CHECK(norm(by_weights - c) < 1e-14);
+      }
+  }
+  CHECK(ghosts == 24);  // three quads at each of the eight vertices of valence 3
+}
+
+TEST_CASE("tangents of a patch are the derivatives of its place, and neighbouring patches meet") {
+  const SolidTopology ball(ball_grid(4));
+  const std::vector<Vec<3>> x = outline_of(ball);
+  constexpr double step = 1e-6;
+  for (const PatchNet& net : ball.patches) {
+    const SurfacePatch patch(net, x.data());
+    const auto c = patch.at(0.3, 0.7);
+    CHECK(norm((1 / (2 * step)) * (patch.at(0.3 + step, 0.7).place - patch.at(0.3 - step, 0.7).place) -
+               c.along_u) < 1e-9);
+    CHECK(norm((1 / (2 * step)) * (patch.at(0.3, 0.7 + step).place - patch.at(0.3, 0.7 - step).place) -
+               c.along_v) < 1e-9);
+    CHECK(norm(patch.at(0, 0).place - x[static_cast<std::size_t>(net.vertex[5])]) < 1e-14);
+    CHECK(norm(patch.at(1, 1).place - x[static_cast<std::size_t>(net.vertex[10])]) < 1e-14);
+  }
+}
+
+TEST_CASE("vertices of two balls face each other's sphere along the line of centres") {
+  TwoBalls two(0.02);
+  const auto contacts = SurfaceNeighbours{}.detect(two.grains, two.state, 0.3);
+  REQUIRE(contacts.size() > 4);
+  bool first = false, second = false;
+  for (const SurfaceContact& contact : contacts) {
+    const int grain = two.grains.grain_of_vertex(contact.vertex);
+    (grain == 0 ? first : second) = true;
+    const Vec<3> centre{0, 0, grain == 0 ? 1.96 : 0.0};  // of the master
+    const Vec<3> d = two.state.position[static_cast<std::size_t>(contact.vertex)] - centre;
+    CHECK(contact.gap == doctest::Approx(norm(d) - 1).epsilon(0.006));  // of a smooth outline of 98 vertices
+    CHECK(dot(contact.normal, d) / norm(d) > 0.999);
+    CHECK(gap_now(contact, two.state) == doctest::Approx(contact.gap).epsilon(1e-9));
+  }
+  CHECK((first && second));
+}
+
+TEST_CASE("impulses of contacts between grains in space change no momentum") {
+  TwoBalls two(0.03);
+  const auto contacts = SurfaceNeighbours{}.detect(two.grains, two.state, 0.1);
+  for (const SurfaceContact& contact : contacts) {
+    double sum = 0;
+    contact.for_each_vertex([&](int, double weight) { sum += weight; });
+    CHECK(std::abs(sum) < 1e-14);
+  }
+}
+
+TEST_CASE("impulses go over to the contacts that are found next, in their own axes") {
+  TwoBalls two(0.02);
+  const auto old = SurfaceNeighbours{}.detect(two.grains, two.state, 0.1);
+  std::vector<Vec<3>> impulse;
+  for (std::size_t c = 0; c < old.size(); ++c) impulse.push_back({1.0 + static_cast<double>(c), 0.2, -0.1});
+  for (Vec<3>& x : two.state.position) x = test::turn_in(0, 2, 0.01) * x;
+  const auto now = SurfaceNeighbours{}.detect(two.grains, two.state, 0.1);
+  const auto carried = carried_impulses(two.grains, old, impulse, now);
+  REQUIRE(now.size() == old.size());
+  for (std::size_t c = 0; c < now.size(); ++c)
+    CHECK(norm(impulse_vector(now[c], carried[c]) - impulse_vector(old[c], impulse[c])) < 1e-13);
+}
