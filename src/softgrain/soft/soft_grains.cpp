@@ -128,6 +128,11 @@ double SoftGrains::radius_of_area(int grain) const {
 }
 
 template <>
+double GrainsOf<3>::radius_of_area(int grain) const {
+  return radius(grain);
+}
+
+template <>
 std::array<int, 2> SoftGrains::beside(int vertex) const {
   const int grain = grain_of_vertex(vertex), begin = outline_begin(grain), end = outline_end(grain);
   return {vertex > begin ? vertex - 1 : end - 1, vertex + 1 < end ? vertex + 1 : begin};

@@ -110,7 +110,7 @@ class GrainsOf {
 
   int size() const { return static_cast<int>(radius_.size()); }
   double radius(int grain) const { return radius_[grain]; }
-  /// Of the disk of the grain's undeformed area [m]: R of a disk.
+  /// Of the disk of the grain's undeformed area [m]: R of a disk; of a ball its R.
   double radius_of_area(int grain) const;
   int kinds() const { return static_cast<int>(materials_.size()); }
   int kind(int grain) const { return batches[place_[grain].batch].kind; }
@@ -184,6 +184,8 @@ using SoftGrains = GrainsOf<2>;
 
 template <>
 double SoftGrains::radius_of_area(int grain) const;
+template <>
+double GrainsOf<3>::radius_of_area(int grain) const;
 template <>
 std::array<int, 2> SoftGrains::beside(int vertex) const;
 
