@@ -88,7 +88,7 @@ std::vector<Key> all_keys() {
       KEY(bpm.library, "", from_to(1, 1000), "different aggregates of which the grains are copies (in a box)", bpm_in_a_box),
 
       KEY(mpm.law, "", its_words(), "law of the material", with_mpm),
-      KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points, and 4 cells vertices on its outline, a rigid one too; in space of its inner cube, 32 cells^3 points, 6 where it is left out", with_outlines),
+      KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points and 4 cells vertices, a rigid one the vertices alone; in space: of the inner cube, 32 cells^3 points, 6 where left out", with_outlines),
       KEY(mpm.integrator, "", its_words(), "backward Euler, or symplectic Euler with lumped masses; in space explicit, also where it is left out", total_lagrangian),
       KEY(mpm.formulation, "", its_words(),
           "total_lagrangian: on a grid that fits the grain; updated_lagrangian: points move through a lattice that is "
