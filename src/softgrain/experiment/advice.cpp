@@ -68,7 +68,19 @@ double inertial_time(const Case& c) { return diameter_of(c) * std::sqrt(density_
 
 double quasi_static_rate(const Case& c) { return c.loading.inertial_number / inertial_time(c); }
 
-double quasi_static_velocity(const Case& c) { return quasi_static_rate(c) * height_of(c); }
+void set_quasi_static_speeds(Case& c) {
+  const double rate = quasi_static_rate(c);
+  const bool shears = c.experiment.loading == LoadingPath::shear && c.stages.empty();
+  const auto set = [&](double& value, double quasi_static) {
+    value = quasi_static;
+    c.loading.quasi_static = true;
+  };
+  for (Stage& stage : c.stages)
+    for (Drive& drive : stage.drives)
+      if (drive.quasi_static) set(drive.value, rate);
+  if (shears && c.loading.shear_rate == 0) set(c.loading.shear_rate, rate);
+  if (c.loading.wall_velocity == 0) set(c.loading.wall_velocity, rate * height_of(c));
+}
 
 Advice advise(const Case& c) {
   Advice advice;

@@ -25,8 +25,9 @@ struct Advice {
 /// Rate of strain [1/s] at which the inertial number is loading.inertial_number, at the stress of Advice:
 ///   I/(d sqrt(rho/p)), of the densest kind and the mean diameter.
 double quasi_static_rate(const Case& the_case);
-/// Of the walls, at the height at the start [m/s].
-double quasi_static_velocity(const Case& the_case);
+/// Gives a case this rate wherever it leaves a speed or a rate to the inertial number (wall_velocity or
+/// shear_rate 0, Drive::quasi_static); speeds of walls are those at the height at the start.
+void set_quasi_static_speeds(Case& the_case);
 
 /// Of a valid case.
 Advice advise(const Case& the_case);

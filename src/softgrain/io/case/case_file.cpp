@@ -192,21 +192,10 @@ class CaseReader {
                                        written_value(now, *find_key("time.step"))));
   }
 
-  /// What is left to the inertial number.
   void take_quasi_static_speeds() {
     Case& c = draft_.the_case;
-    const bool shears = scope::shearing.covers(c) && c.loading.shear_rate == 0;
-    const double rate = quasi_static_rate(c);
-    c.loading.quasi_static = shears || c.loading.wall_velocity == 0;
-    for (Stage& stage : c.stages)
-      for (Drive& drive : stage.drives)
-        if (drive.quasi_static) {
-          drive.value = rate;
-          c.loading.quasi_static = true;
-        }
-    if (shears) c.loading.shear_rate = rate;
-    if (c.loading.wall_velocity == 0) c.loading.wall_velocity = quasi_static_velocity(c);
-    if (c.loading.quasi_static && !std::isfinite(rate))
+    set_quasi_static_speeds(c);
+    if (c.loading.quasi_static && !std::isfinite(quasi_static_rate(c)))
       draft_.add(last_origin({"loading.wall_velocity", "loading.shear_rate", "experiment.loading"}),
                  "\"quasi-static\" needs a stress: rigid grains have none of their own; name one, as "
                  "loading.max_stress or that of a stage");
