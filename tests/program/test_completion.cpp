@@ -50,7 +50,7 @@ TEST_CASE("bash completes values where they can be listed, also behind =, at whi
   CHECK(bash_offers("export run --to con") == "contacts\n");
   CHECK(bash_offers("plot run --format = p") == "png\npdf\n");
   CHECK(bash_offers("run case.toml --set experiment.model = m") == "mpm\n");
-  CHECK(bash_offers("run case.toml --set experiment.model =") == "bpm\nmpm\n");
+  CHECK(bash_offers("run case.toml --set experiment.model =") == "bpm\nmpm\nrigid\n");
   CHECK(bash_offers("run case.toml --set output.vtk = t") == "true\n");
   CHECK(bash_offers("sweep case.toml --column z_no") == "z_no_rattlers\n");
   CHECK(bash_offers("reproduce fig3 --scale q") == "quick\n");

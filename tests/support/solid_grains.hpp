@@ -35,7 +35,8 @@ inline SolidGrains balls(int n, int count, double nu, bool mean_dilatation = fal
   for (int k = 0; k < count; ++k)
     placed.push_back(
         {.topology = shape, .radius = 1, .centre = {3.0 * k, 0, 0}, .angle = some_turn(k), .velocity = {}});
-  return {std::move(placed), {GrainMaterial{make_law(law, 1, nu), 1, mean_dilatation}}};
+  return {std::move(placed),
+          {GrainMaterial{.law = make_law(law, 1, nu), .density = 1, .mean_dilatation = mean_dilatation}}};
 }
 
 /// Two walls across z, which come together at v each.
