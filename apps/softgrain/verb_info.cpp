@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/experiment/estimate.hpp"
 #include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/case/words.hpp"
 #include "softgrain/io/format/file.hpp"
@@ -46,8 +47,8 @@ Json json_of(const std::vector<Quantity>& row) {
 /// "diametral of bpm, 1750 primaries, friction 0, seed 1", "compaction of mpm, 20 grains of 3584 points,
 /// ...".
 std::string summary(const Case& c) {
-  const std::string grain = is_elastic(c) ? fmt::format("{} points", 14 * c.mpm.cells * c.mpm.cells)
-                            : is_rigid(c) ? fmt::format("{} vertices", 4 * c.mpm.cells)
+  const std::string grain = is_elastic(c) ? fmt::format("{} points", points_of_grain(c))
+                            : is_rigid(c) ? fmt::format("{} vertices", points_of_grain(c))
                                           : fmt::format("{} primaries", c.bpm.primaries);
   const std::string grains =
       c.experiment.loading == LoadingPath::diametral ? "" : fmt::format("{} grains of ", c.sample.grains);

@@ -68,8 +68,9 @@ double inertial_time(const Case& c) { return diameter_of(c) * std::sqrt(density_
 
 double quasi_static_rate(const Case& c) { return c.loading.inertial_number / inertial_time(c); }
 
-void set_quasi_static_speeds(Case& c) {
-  const double rate = quasi_static_rate(c);
+bool set_quasi_static_speeds(Case& c) {
+  const bool known = std::isfinite(quasi_static_rate(c));
+  const double rate = known ? quasi_static_rate(c) : 1;
   const bool shears = c.experiment.loading == LoadingPath::shear && c.stages.empty();
   const auto set = [&](double& value, double quasi_static) {
     value = quasi_static;
@@ -80,6 +81,7 @@ void set_quasi_static_speeds(Case& c) {
       if (drive.quasi_static) set(drive.value, rate);
   if (shears && c.loading.shear_rate == 0) set(c.loading.shear_rate, rate);
   if (c.loading.wall_velocity == 0) set(c.loading.wall_velocity, rate * height_of(c));
+  return known || !c.loading.quasi_static;
 }
 
 Advice advise(const Case& c) {

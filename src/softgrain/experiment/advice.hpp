@@ -26,8 +26,9 @@ struct Advice {
 ///   I/(d sqrt(rho/p)), of the densest kind and the mean diameter.
 double quasi_static_rate(const Case& the_case);
 /// Gives a case this rate wherever it leaves a speed or a rate to the inertial number (wall_velocity or
-/// shear_rate 0, Drive::quasi_static); speeds of walls are those at the height at the start.
-void set_quasi_static_speeds(Case& the_case);
+/// shear_rate 0, Drive::quasi_static); speeds of walls are those at the height at the start. False for rigid
+/// grains that no stress presses, which have no such rate: they get any.
+bool set_quasi_static_speeds(Case& the_case);
 
 /// Of a valid case.
 Advice advise(const Case& the_case);

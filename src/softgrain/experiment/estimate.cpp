@@ -81,6 +81,12 @@ double primaries(const Case& c) {
 
 }  // namespace
 
+int points_of_grain(const Case& c) {
+  const int n = c.mpm.cells;
+  if (is_rigid(c)) return 4 * n;
+  return is_in_space(c) ? 32 * n * n * n : 14 * n * n;
+}
+
 double box_height(const Case& c) {
   if (is_in_space(c)) {
     if (!is_in_a_box(c)) return 2 * c.grain.radius;
@@ -122,13 +128,9 @@ bool remembers(const Case& c) {
          }) > 0;
 }
 
-/// Of material, of elastic grains; a rigid one counts the vertices of its outline.
+/// Of all grains that are not bonded.
 double points(const Case& c) {
-  if (is_in_space(c)) return grains(c) * 32 * std::pow(c.mpm.cells, 3);
-  return sum_of_kinds(c, [](const Case& kind) {
-    const int cells = kind.mpm.cells;
-    return grains(kind) * (is_rigid(kind) ? 4 * cells : 14 * cells * cells);
-  });
+  return sum_of_kinds(c, [](const Case& kind) { return grains(kind) * points_of_grain(kind); });
 }
 
 /// CPU time of an implicit step for each point [s]. In a box it grows with s = dt c/R, the wave times of a

@@ -7,8 +7,7 @@ namespace softgrain {
 
 /// What a run will take, before it runs; a guide, good to a factor of about two.
 struct Estimate {
-  double particles = 0;  ///< bpm: primary particles; mpm: material points, 14 cells^2 in a grain, 4 cells
-                         ///< in a rigid one
+  double particles = 0;  ///< bpm: primary particles; else points_of_grain of all
   double contacts =
       0;  ///< bpm: 2.2 per primary, a dense packing has about 2; mpm: half of the outlines' vertices
   double steps = 0;  ///< of the loading path; preparing the sample comes on top
@@ -17,6 +16,9 @@ struct Estimate {
   double disk = 0;   ///< [bytes] snapshots and ParaView's files
   double hours = 0;  ///< [h] on one thread; bpm: with 17 sweeps a step, as usual
 };
+
+/// Material points of a grain that is not bonded; of a rigid one the vertices of its outline.
+int points_of_grain(const Case& the_case);
 
 /// The time step with which a run of the case begins [s], and the height of its box [m], both for grains of
 /// mean size.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <optional>
 
 #include "softgrain/experiment/advice.hpp"
@@ -193,9 +192,7 @@ class CaseReader {
   }
 
   void take_quasi_static_speeds() {
-    Case& c = draft_.the_case;
-    set_quasi_static_speeds(c);
-    if (c.loading.quasi_static && !std::isfinite(quasi_static_rate(c)))
+    if (!set_quasi_static_speeds(draft_.the_case))
       draft_.add(last_origin({"loading.wall_velocity", "loading.shear_rate", "experiment.loading"}),
                  "\"quasi-static\" needs a stress: rigid grains have none of their own; name one, as "
                  "loading.max_stress or that of a stage");

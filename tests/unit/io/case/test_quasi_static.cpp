@@ -77,6 +77,11 @@ TEST_CASE("no speed is no quasi-static one, and a number that nothing is left to
   CHECK(mentions(refusal(elastic_box + "loading.wall_velocity = 0\n"),
                  "loading.wall_velocity = 0 is out of range: it must be > 0"));
   CHECK(mentions(refusal(grains + "[[stage]]\nyy = 'slow'\nuntil = { strain = 0.1 }\n"), "quasi-static"));
+  const std::string rigid = refusal(
+      "experiment.model = 'rigid'\nexperiment.loading = 'compaction'\n"
+      "loading.wall_velocity = 'quasi-static'\n");
+  CHECK(mentions(rigid, "3:9: error: \"quasi-static\" needs a stress"));
+  CHECK(mentions(rigid, "1 error; nothing was run"));
   const CaseReading idle =
       parse_case_with_notes(elastic_box + "loading.inertial_number = 0.01\n", "case.toml");
   REQUIRE(idle.without_effect.size() == 1);
