@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -20,8 +19,6 @@
 #include "verbs.hpp"
 
 namespace softgrain {
-
-namespace fs = std::filesystem;
 
 namespace {
 

@@ -77,8 +77,8 @@ class SimulationOf final : public AnySimulation {
   /// dt [s]: of every step.
   SimulationOf(std::unique_ptr<ModelOf<Dim>> model, Box<Dim> box, LoadingOf<Dim> loading, double dt);
   SimulationOf(const SimulationOf& other);
-  SimulationOf(SimulationOf&&) = default;
-  SimulationOf& operator=(SimulationOf&&) = default;
+  SimulationOf(SimulationOf&&) noexcept = default;
+  SimulationOf& operator=(SimulationOf&&) noexcept = default;
 
   bool finished() const override { return loading_.finished(); }
   double progress() const override { return loading_.progress(time(), dt_); }

@@ -73,8 +73,8 @@ class BrickInLanes {
   /// work(p) for the eight points, unrolled: p is a constant.
   template <class Work>
   [[gnu::always_inline]] static void for_each_point(const Work& work) {
-    [&]<std::size_t... p>(std::index_sequence<p...>) {
-      (work(std::integral_constant<std::size_t, p>{}), ...);
+    [&]<std::size_t... P>(std::index_sequence<P...>) {
+      (work(std::integral_constant<std::size_t, P>{}), ...);
     }
     (std::make_index_sequence<8>{});
   }

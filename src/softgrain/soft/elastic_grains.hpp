@@ -15,7 +15,7 @@ namespace softgrain {
 template <class Dynamics>
 class ElasticGrains final : public ModelOf<Dynamics::dimension> {
  public:
-  static constexpr int Dim = Dynamics::dimension;
+  static constexpr int Dim = Dynamics::dimension;  // NOLINT(readability-identifier-naming): as a parameter
 
   /// Grains among as many walls as the dynamics were given.
   explicit ElasticGrains(Dynamics dynamics)

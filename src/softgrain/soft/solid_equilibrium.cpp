@@ -41,7 +41,7 @@ unsigned lanes_without(const Wide& positive) {
 [[gnu::flatten]] void set_to_laplace(const LaplaceRows& L, const Wide& scale, const WidePlaces<3>& x,
                                      WidePlaces<3>& force) {
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const Vec<3, Wide> x_i = x[i];
+    const Vec<3, Wide>& x_i = x[i];
     Vec<3, Wide> sum{};
     for (int k = L.begin[i]; k < L.begin[i + 1]; ++k) {
       const auto at = static_cast<std::size_t>(k);
