@@ -14,6 +14,7 @@ MOST_PANELS = 4
 HEADING, KEY = 9, 16  # [mm]: above the panels, right of them
 AZIMUTH, ELEVATION = np.radians(-62), np.radians(18)  # from where one looks
 LIGHT = np.array([0.35, -0.75, 0.8]) / np.linalg.norm([0.35, -0.75, 0.8])
+MARGIN = 0.01  # of the width, so that lines of edges are whole
 DARKEST = 0.35  # of a face that looks away from the light
 EDGES = ((0, 1), (1, 2), (2, 3), (3, 0))
 
@@ -32,7 +33,8 @@ def draw_space(run):
 
     corners = [_project(snapshot.surface["walls"].reshape(-1, 3)) for _, snapshot in snapshots]
     points = np.concatenate([_project(snapshot.outlines["position"]) for _, snapshot in snapshots] + corners)
-    (x0, y0), (x1, y1) = points[:, :2].min(0), points[:, :2].max(0)
+    margin = MARGIN * np.ptp(points[:, 0])
+    (x0, y0), (x1, y1) = points[:, :2].min(0) - margin, points[:, :2].max(0) + margin
     width = (DOUBLE_COLUMN - KEY) / len(snapshots)
     height = min(width * (y1 - y0) / (x1 - x0), 120)
     figure = Figure(figsize=(DOUBLE_COLUMN * MM, (height + HEADING) * MM))
