@@ -1,3 +1,4 @@
+#include "softgrain/soft/carried_impulses.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
 #include "softgrain/soft/span_curve.hpp"
 
@@ -30,18 +31,10 @@ double gap_now(const OutlineContact& contact, const OutlineState& state) {
 std::vector<Vec<2>> carried_impulses(const SoftGrains& grains, std::span<const OutlineContact> old,
                                      std::span<const Vec<2>> old_impulse,
                                      std::span<const OutlineContact> contacts) {
-  std::vector<Vec<2>> impulse(contacts.size());
-  const auto same = [&](const OutlineContact& a, const OutlineContact& b) {
-    if (a.wall >= 0 || b.wall >= 0) return a.wall == b.wall;
-    return grains.grain_of_vertex(a.master[0]) == grains.grain_of_vertex(b.master[0]);
-  };
-  std::size_t first = 0;  // old contact of the same vertex: both lists are sorted by it
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    while (first < old.size() && old[first].vertex < contacts[c].vertex) ++first;
-    for (std::size_t k = first; k < old.size() && old[k].vertex == contacts[c].vertex; ++k)
-      if (old_impulse[k][0] > 0 && same(old[k], contacts[c])) impulse[c] = old_impulse[k];
-  }
-  return impulse;
+  return carry_impulses(
+      old, old_impulse, contacts, [](const OutlineContact& c) { return c.vertex; },
+      [&](const OutlineContact& c) { return grains.grain_of_vertex(c.master[0]); },
+      [](const OutlineContact&, const Vec<2>& impulse, const OutlineContact&) { return impulse; });
 }
 
 }  // namespace softgrain

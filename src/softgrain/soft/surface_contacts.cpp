@@ -8,6 +8,7 @@
 
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/cell_grid.hpp"
+#include "softgrain/soft/carried_impulses.hpp"
 
 namespace softgrain {
 namespace {
@@ -213,19 +214,12 @@ Vec<3> relative_displacement(const SurfaceContact& contact, const OutlineStateOf
 std::vector<Vec<3>> carried_impulses(const SolidGrains& grains, std::span<const SurfaceContact> old,
                                      std::span<const Vec<3>> old_impulse,
                                      std::span<const SurfaceContact> contacts) {
-  std::vector<Vec<3>> impulse(contacts.size());
-  const auto same = [&](const SurfaceContact& a, const SurfaceContact& b) {
-    if (a.wall >= 0 || b.wall >= 0) return a.wall == b.wall;
-    return grains.grain_of_vertex(a.master[5]) == grains.grain_of_vertex(b.master[5]);
-  };
-  std::size_t first = 0;  // old contact of the same point: both lists are sorted by it
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    while (first < old.size() && old[first].point < contacts[c].point) ++first;
-    for (std::size_t k = first; k < old.size() && old[k].point == contacts[c].point; ++k)
-      if (old_impulse[k][0] > 0 && same(old[k], contacts[c]))
-        impulse[c] = to_local(contacts[c].normal, impulse_vector(old[k], old_impulse[k]));
-  }
-  return impulse;
+  return carry_impulses(
+      old, old_impulse, contacts, [](const SurfaceContact& c) { return c.point; },
+      [&](const SurfaceContact& c) { return grains.grain_of_vertex(c.master[5]); },
+      [](const SurfaceContact& was, const Vec<3>& impulse, const SurfaceContact& now) {
+        return to_local(now.normal, impulse_vector(was, impulse));
+      });
 }
 
 }  // namespace softgrain
