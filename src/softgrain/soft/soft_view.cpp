@@ -5,6 +5,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/geometry/polygon.hpp"
+#include "softgrain/soft/contact_lists.hpp"
 #include "softgrain/soft/equilibrium.hpp"
 #include "softgrain/soft/history.hpp"
 #include "softgrain/soft/solid_equilibrium.hpp"
@@ -140,14 +141,6 @@ namespace {
 
 constexpr std::size_t bodies_of_contact = 6;
 
-void check_bodies(std::span<const std::int64_t> bodies, int vertices, int walls) {
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const bool is_wall = i % bodies_of_contact == 1;
-    if (bodies[i] < (is_wall ? -1 : 0) || bodies[i] >= (is_wall ? walls : vertices))
-      throw IoError(fmt::format("the snapshot's array 'contact_bodies' holds {}", bodies[i]));
-  }
-}
-
 }  // namespace
 
 void visit_contacts(const SoftGrains& grains, int walls, bool repeats, std::vector<OutlineContact>& contacts,
@@ -163,14 +156,7 @@ void visit_contacts(const SoftGrains& grains, int walls, bool repeats, std::vect
     places.push_back({c.share, c.normal[0], c.normal[1], c.gap, c.slip});
     if (repeats) images.push_back(c.image);
   }
-  visit.list(
-      {"contact_bodies", "", Owner::contact, Role::start,
-       "vertex, wall or -1, four master vertices; in space point, vertex, wall or -1, 16 of the patch"},
-      bodies, bodies_of_contact);
-  visit.list(
-      {"contact_places", "", Owner::contact, Role::start,
-       "share, normal (2), gap [m], slip [m]; in space normal (3), gap [m], weights of the patch (16)"},
-      places);
+  visit_contact_lists(visit, bodies, bodies_of_contact, places);
   if (repeats)
     visit.list({"contact_image", "m", Owner::contact, Role::start, "from the master to where it is met"},
                images);
@@ -180,7 +166,8 @@ void visit_contacts(const SoftGrains& grains, int walls, bool repeats, std::vect
                arcs);
   visit.list({"contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t)"}, impulse);
   if (!visit.reads()) return;
-  check_bodies(bodies, grains.outline_size(), walls);
+  check_contact_bodies(bodies, bodies_of_contact, 1,
+                       [&](std::size_t k) { return k == 1 ? walls : grains.outline_size(); });
   if (places.size() != impulse.size() || (repeats && images.size() != impulse.size()) ||
       (rigid && arcs.size() != impulse.size()) || bodies.size() != bodies_of_contact * places.size())
     throw IoError("the snapshot's arrays of contacts have different lengths");

@@ -4,6 +4,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/material/elastic_law.hpp"
+#include "softgrain/soft/contact_lists.hpp"
 #include "softgrain/soft/soft_view.hpp"
 
 namespace softgrain {
@@ -55,15 +56,6 @@ std::vector<double> skin_pressures(const SolidGrains& grains, int grain) {
 }
 
 constexpr std::size_t masters = 16, bodies_of_contact = 3 + masters;
-
-void check_bodies_in_space(std::span<const std::int64_t> bodies, int points, int vertices, int walls) {
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const std::size_t k = i % bodies_of_contact;
-    const int most = k == 0 ? points : k == 2 ? walls : vertices;
-    if (bodies[i] < (k == 2 ? -1 : 0) || bodies[i] >= most)
-      throw IoError(fmt::format("the snapshot's array 'contact_bodies' holds {}", bodies[i]));
-  }
-}
 
 }  // namespace
 
@@ -146,19 +138,14 @@ void visit_contacts(const SolidGrains& grains, int walls, bool, std::vector<Surf
     for (std::size_t k = 0; k < masters; ++k) place[static_cast<int>(4 + k)] = c.weight[k];
     places.push_back(place);
   }
-  visit.list(
-      {"contact_bodies", "", Owner::contact, Role::start,
-       "vertex, wall or -1, four master vertices; in space point, vertex, wall or -1, 16 of the patch"},
-      bodies, bodies_of_contact);
-  visit.list(
-      {"contact_places", "", Owner::contact, Role::start,
-       "share, normal (2), gap [m], slip [m]; in space normal (3), gap [m], weights of the patch (16)"},
-      places);
+  visit_contact_lists(visit, bodies, bodies_of_contact, places);
   visit.list({"contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t)"}, impulse);
   if (!visit.reads()) return;
   int patches = 0;
   for (int g = 0; g < grains.size(); ++g) patches += static_cast<int>(grains.topology(g).patches.size());
-  check_bodies_in_space(bodies, grains.outline_size() + patches, grains.outline_size(), walls);
+  check_contact_bodies(bodies, bodies_of_contact, 2, [&](std::size_t k) {
+    return k == 2 ? walls : grains.outline_size() + (k == 0 ? patches : 0);
+  });
   if (places.size() != impulse.size() || bodies.size() != bodies_of_contact * places.size())
     throw IoError("the snapshot's arrays of contacts have different lengths");
   contacts.clear();
