@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string_view>
+#include <vector>
 
 #include "softgrain/geometry/polygon.hpp"
 #include "softgrain/material/elastic_law.hpp"
 #include "softgrain/soft/point_states.hpp"
+#include "support/energy_differences.hpp"
 #include "support/soft_grains.hpp"
 
 using namespace softgrain;
@@ -58,20 +61,9 @@ TEST_CASE("internal force is the derivative of the elastic energy") {
     GrainBatch& batch = grains.batches[0];
     WideVectors force;
     REQUIRE(internal_force(grains, batch, force) == 0);
-    constexpr double step = 1e-6;
-    double worst = 0;
-    for (std::size_t i = 0; i < batch.position.size(); ++i)
-      for (int d = 0; d < 2; ++d) {
-        const Wide x = batch.position[i][d];
-        batch.position[i][d] = x + Wide(step);
-        const Wide above = elastic_energy(grains, batch);
-        batch.position[i][d] = x - Wide(step);
-        const Wide below = elastic_energy(grains, batch);
-        batch.position[i][d] = x;
-        for (int lane = 0; lane < Wide::size; ++lane)
-          worst = std::max(worst, std::abs((above - below)[lane] / (2 * step) - force[i][d][lane]));
-      }
-    CHECK(worst < 1e-7);
+    std::vector<std::size_t> nodes(batch.position.size());
+    std::iota(nodes.begin(), nodes.end(), std::size_t{0});
+    CHECK(test::worst_of_energy_differences<2>(grains, batch, force, nodes, 1e-6) < 1e-7);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "softgrain/core/error.hpp"
+#include "support/energy_differences.hpp"
 #include "support/solid_grains.hpp"
 
 using namespace softgrain;
@@ -85,20 +86,7 @@ TEST_CASE("the force of grains in space is the derivative of their elastic energ
       SolidBatch& batch = grains.batches[0];
       WidePlaces<3> force;
       REQUIRE(internal_force(grains, batch, force) == 0);
-      constexpr double step = 1e-5;
-      double worst = 0;
-      for (const std::size_t i : {0UL, 13UL, 30UL, 52UL})
-        for (int d = 0; d < 3; ++d) {
-          const Wide x = batch.position[i][d];
-          batch.position[i][d] = x + Wide(step);
-          const Wide above = elastic_energy(grains, batch);
-          batch.position[i][d] = x - Wide(step);
-          const Wide below = elastic_energy(grains, batch);
-          batch.position[i][d] = x;
-          for (int lane = 0; lane < Wide::size; ++lane)
-            worst = std::max(worst, std::abs((above - below)[lane] / (2 * step) - force[i][d][lane]));
-        }
-      CHECK(worst < 1e-8);
+      CHECK(test::worst_of_energy_differences<3>(grains, batch, force, {0, 13, 30, 52}, 1e-5) < 1e-8);
     }
 }
 
