@@ -11,6 +11,7 @@ import { Renderer } from "./renderer";
 import { Run } from "./run";
 import { savePicture } from "./save";
 import { valueAt } from "./series";
+import { toggleTheme } from "./theme";
 import { short, withUnit } from "./units";
 
 const $ = <T extends HTMLElement = HTMLElement>(selector: string) => document.querySelector<T>(selector)!;
@@ -208,11 +209,7 @@ class Page {
   }
 
   private toggleTheme(): void {
-    const root = document.documentElement;
-    const dark = root.dataset.theme
-      ? root.dataset.theme === "dark"
-      : matchMedia("(prefers-color-scheme: dark)").matches;
-    root.dataset.theme = dark ? "light" : "dark";
+    toggleTheme();
     this.themeChanged();
   }
 

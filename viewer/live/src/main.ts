@@ -1,5 +1,6 @@
 // The live page: choices, the worker that computes, and the pictures that it sends.
 import { gradient } from "../../src/colours";
+import { toggleTheme } from "../../src/theme";
 import { withUnit } from "../../src/units";
 import { caseText, Choices, fromHash, lowest, pace, toHash } from "./case";
 import { Controls } from "./controls";
@@ -172,11 +173,7 @@ class Page {
   }
 
   private toggleTheme(): void {
-    const root = document.documentElement;
-    const dark = root.dataset.theme
-      ? root.dataset.theme === "dark"
-      : matchMedia("(prefers-color-scheme: dark)").matches;
-    root.dataset.theme = dark ? "light" : "dark";
+    toggleTheme();
     this.themeChanged();
   }
 
