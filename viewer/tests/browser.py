@@ -8,6 +8,8 @@ import signal
 import subprocess
 import tempfile
 import time
+import unittest
+from pathlib import Path
 
 
 class Browser:
@@ -139,3 +141,28 @@ class Browser:
         data = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=full)["data"]
         with open(path, "wb") as file:
             file.write(base64.b64decode(data))
+
+
+class BrowserTest(unittest.TestCase):
+    """Tests that share one browser and one folder; a test of its own begins with nothing logged and nothing asked for."""
+
+    program = None  # of Chromium
+
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+        cls.browser = Browser(cls.program)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.__exit__()
+        cls.temporary.cleanup()
+
+    def setUp(self):
+        self.browser.errors.clear()
+        self.browser.requests.clear()
+
+    def tearDown(self):
+        self.browser.resize(1440, 900)
+        self.browser.prefer("light")

@@ -5,7 +5,6 @@ Exit code 77, for CTest's "skipped", where there is no Chromium or no Python pac
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
@@ -21,7 +20,7 @@ if CHROMIUM is None:
     print("skipped: the page is not tested in a browser: no chromium; tools/install_dependencies.sh --with viewer")
     sys.exit(77)
 
-from browser import Browser  # noqa: E402
+from browser import BrowserTest  # noqa: E402
 
 PROGRAM = sys.argv[1]
 PICTURES = Path(sys.argv[2]) if len(sys.argv) > 2 else None
@@ -46,26 +45,13 @@ def make_runs(folder):
                    capture_output=True)
 
 
-class Page(unittest.TestCase):
+class Page(BrowserTest):
+    program = CHROMIUM
+
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = Path(cls.temporary.name)
+        super().setUpClass()
         make_runs(cls.folder)
-        cls.browser = Browser(CHROMIUM)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.__exit__()
-        cls.temporary.cleanup()
-
-    def setUp(self):
-        self.browser.errors.clear()
-        self.browser.requests.clear()
-
-    def tearDown(self):
-        self.browser.resize(1440, 900)
-        self.browser.prefer("light")
 
     def open(self, page="compaction-mpm/run/report.html"):
         self.browser.open(self.folder / page)

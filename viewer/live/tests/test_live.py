@@ -7,7 +7,6 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
@@ -25,31 +24,17 @@ if CHROMIUM is None or not PAGE.exists():
     sys.exit(77)
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
-from browser import Browser  # noqa: E402
+from browser import BrowserTest  # noqa: E402
 
 STAGE = "document.querySelector('.stage').getBoundingClientRect()"
 TOLERANCE = 1e-9
 
 
-class LivePage(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = Path(cls.temporary.name)
-        cls.browser = Browser(CHROMIUM)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.__exit__()
-        cls.temporary.cleanup()
-
-    def setUp(self):
-        self.browser.errors.clear()
-        self.browser.requests.clear()
+class LivePage(BrowserTest):
+    program = CHROMIUM
 
     def tearDown(self):
-        self.browser.resize(1440, 900)
-        self.browser.prefer("light")
+        super().tearDown()
         self.assertEqual(self.browser.errors, [])
         foreign = [url for url in self.browser.requests if not url.startswith(("file://", "blob:", "data:"))]
         self.assertEqual(foreign, [])
