@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "softgrain/experiment/adhesion_of_case.hpp"
 #include "softgrain/experiment/advice.hpp"
 #include "softgrain/experiment/check_case.hpp"
 #include "softgrain/experiment/estimate.hpp"
@@ -31,6 +32,13 @@ std::vector<std::string> notes_of(const CaseReading& reading) {
 
 namespace {
 
+/// Bonded grains and grains in space do not adhere.
+AdhesionAdvice adhesion_advice(const Case& the_case) {
+  Case adhering = the_case;
+  if (is_bonded(the_case) || is_in_space(the_case)) adhering.contact = {};
+  return advise_on_adhesion(adhering);
+}
+
 struct CheckOptions {
   CaseArguments arguments;
   bool json = false;
@@ -42,6 +50,7 @@ nlohmann::ordered_json finite(double number) {
 }
 
 void print_json(const CaseReading& reading, const Estimate& estimate, const Advice& advice) {
+  const AdhesionAdvice adhesion = adhesion_advice(reading.the_case);
   const nlohmann::ordered_json result{{"case", nlohmann::ordered_json::parse(case_json(reading.the_case))},
                                       {"estimate",
                                        {{"particles", estimate.particles},
@@ -55,7 +64,8 @@ void print_json(const CaseReading& reading, const Estimate& estimate, const Advi
                                         {"longest_step", finite(advice.longest_step)},
                                         {"inertial_number", advice.inertial_number},
                                         {"stress", advice.stress},
-                                        {"blow", advice.blow}}},
+                                        {"blow", advice.blow},
+                                        {"cohesive_zone", finite(adhesion.zone)}}},
                                       {"without_effect", reading.without_effect},
                                       {"notes", notes_of(reading)}};
   fmt::print("{}\n", result.dump(2));
@@ -72,6 +82,25 @@ void print_estimate(const Case& the_case, const Estimate& estimate) {
              count(estimate.particles), bpm ? "primary particles" : "material points",
              count(estimate.contacts), count(estimate.steps), estimate.memory / 1e6, estimate.disk / 1e6,
              duration_text(3600 * estimate.hours));
+}
+
+/// Of AdhesionAdvice: segments in a cohesive zone, radii in a range.
+constexpr double least_zone = 2, least_reach = 5;
+
+void print_advice_on_adhesion(const Case& the_case) {
+  const AdhesionAdvice advice = adhesion_advice(the_case);
+  if (advice.zone < least_zone)
+    fmt::print(
+        stderr,
+        "warning: where surfaces part, the zone that attracts spans {:.1g} vertices of the outline, and "
+        "they hold or let go vertex by vertex: raise contact.adhesion_range or mpm.cells\n",
+        advice.zone);
+  if (advice.reach < least_reach)
+    fmt::print(
+        stderr,
+        "warning: surfaces attract each other up to {:.2g} of the smallest radius, as far as the shape "
+        "of the grains tells: lower contact.adhesion_range or the surface energy\n",
+        1 / advice.reach);
 }
 
 /// Of Advice::blow, for grains that are pressed.
@@ -112,6 +141,7 @@ void check(const CheckOptions& options) {
   std::fflush(stdout);
   print_estimate(the_case, cost);
   print_advice(advice);
+  print_advice_on_adhesion(the_case);
   for (const std::string& note : notes_of(reading)) fmt::print(stderr, "{}\n", note);
 }
 

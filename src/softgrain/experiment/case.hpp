@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -78,9 +79,12 @@ struct Case {
   } mpm;
 
   struct Contact {
-    double friction = 0;       ///< mu between grains
-    double wall_friction = 0;  ///< mu against walls
-    double restitution = 0;    ///< e_n, Newton's
+    double friction = 0;             ///< mu between grains
+    double wall_friction = 0;        ///< mu against walls
+    double surface_energy = 0;       ///< w between grains [J/m^2]; 0: they do not adhere
+    double wall_surface_energy = 0;  ///< w against walls [J/m^2]
+    double adhesion_range = 0;  ///< delta, up to which they attract [m]; 0: as the grid asks (adhesion_of)
+    double restitution = 0;     ///< e_n, Newton's
     Activation activation = Activation::anticipated;
     double push_out = 0.1;  ///< beta: share of an existing overlap removed in a step
   } contact;
@@ -151,11 +155,13 @@ struct Case {
   };
   std::vector<Kind> kinds{};  ///< none, or at least two (experiment/kinds.hpp)
 
-  /// Friction of two kinds, instead of contact.friction, or of a kind and the walls.
+  /// Contact of two kinds, or of a kind and the walls, where it is not what `contact` says.
   struct Pair {
     static constexpr int wall = -1;
-    int kind = 0, other = wall;  ///< numbers in `kinds`
-    double friction = 0;         ///< mu
+    int kind = 0, other = wall;              ///< numbers in `kinds`
+    std::optional<double> friction{};        ///< mu
+    std::optional<double> surface_energy{};  ///< w [J/m^2]
+    std::optional<double> adhesion_range{};  ///< delta [m]
   };
   std::vector<Pair> pairs{};
 

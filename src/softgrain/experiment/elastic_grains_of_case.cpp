@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/experiment/adhesion_of_case.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/solid_case.hpp"
@@ -79,8 +80,9 @@ GrainPlacement placement(const std::shared_ptr<const Topology>& shape, const Pla
 std::vector<PairFriction> pair_friction_of(const Case& c) {
   std::vector<PairFriction> friction;
   for (const Case::Pair& pair : c.pairs)
-    friction.push_back(
-        {pair.kind, pair.other == Case::Pair::wall ? PairFriction::wall : pair.other, pair.friction});
+    if (pair.friction)
+      friction.push_back(
+          {pair.kind, pair.other == Case::Pair::wall ? PairFriction::wall : pair.other, *pair.friction});
   return friction;
 }
 
@@ -137,6 +139,7 @@ PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
                                 .pair_friction = pair_friction_of(c),
+                                .adhesion = adhesion_of(c),
                                 .gravity = gravity_of(c),
                                 .damping = c.mpm.damping};
   ImplicitDynamics dynamics(std::move(grains), box, options);
@@ -151,6 +154,7 @@ PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box, double
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
                                 .pair_friction = pair_friction_of(c),
+                                .adhesion = adhesion_of(c),
                                 .gravity = gravity_of(c),
                                 .damping = c.mpm.damping};
   ExplicitDynamics dynamics(std::move(grains), box, options);

@@ -45,6 +45,8 @@ std::string not_yet_in_space(const Case& c) {
     return not_yet("a periodic box", "write box.x = \"walls\" and box.y = \"walls\"");
   if (c.box.gravity_x != 0 || c.box.gravity_y != 0)
     return not_yet("gravity", "leave box.gravity_x and box.gravity_y out");
+  if (c.contact.surface_energy > 0 || c.contact.wall_surface_energy > 0)
+    return not_yet("adhesion", "leave contact.surface_energy and contact.wall_surface_energy out");
   if (c.output.report) return not_yet("the page of a run", "write output.report = false, or leave it out");
   if (law_choice(c.mpm.law).remembers())
     return not_yet("a law of the material that flows, creeps or relaxes", "write mpm.law = \"neo_hookean\"");

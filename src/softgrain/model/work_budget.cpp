@@ -8,8 +8,9 @@ Energies energies_of(const WorkBudget& work, double kinetic, double elastic) {
   return {.kinetic = kinetic,
           .stored = elastic,
           .wall_work = work.walls,
-          .dissipation = work.contacts + (work.internal + work.inertia - elastic) + work.damping,
-          .contact = work.contacts,
+          .dissipation =
+              (work.contacts - work.adhesion) + (work.internal + work.inertia - elastic) + work.damping,
+          .contact = work.contacts - work.adhesion,
           .friction = work.friction,
           .error = work.walls + work.gravity - kinetic - work.internal - work.inertia - work.contacts -
                    work.damping};

@@ -16,6 +16,7 @@ struct WorkBudget {
   double flow = 0;      ///< of `internal`: dissipated by flow of the material
   double contacts = 0;  ///< -sum of p . u: taken by contacts
   double friction = 0;  ///< of `contacts`: by sliding
+  double adhesion = 0;  ///< of `contacts`: what the energy of adhesion grew by, which is not dissipated
   double inertia = 0;   ///< backward Euler's sum of m (dv)^2/2
   double damping = 0;   ///< -sum of f_damping . dx, see MassDamping
 };
@@ -25,7 +26,7 @@ Energies energies_of(const WorkBudget& work, double kinetic, double elastic);
 /// The columns that split the dissipation of elastic grains, and their energy.
 Numbers elastic_numbers(const WorkBudget& work, double elastic);
 
-/// Declares what work was spent on, but `flow`, which only some materials do.
+/// Declares what work was spent on, but `flow` and `adhesion`, which only some grains have.
 void visit_work(WorkBudget& work, StateVisitor& visit);
 
 }  // namespace softgrain

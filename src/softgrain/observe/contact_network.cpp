@@ -1,6 +1,7 @@
 #include "softgrain/observe/contact_network.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace softgrain {
@@ -18,15 +19,17 @@ ContactPointOf<Dim> seen_from_first(const ContactPointOf<Dim>& p) {
           .image = -p.image};
 }
 
+/// Means are weighted by |f_n|. Returns the weight.
 template <int Dim>
-void add(GrainPairOf<Dim>& pair, const ContactPointOf<Dim>& point) {
-  const double f_n = dot(point.force, point.normal);
+double add(GrainPairOf<Dim>& pair, const ContactPointOf<Dim>& point) {
+  const double f_n = dot(point.force, point.normal), weight = std::abs(f_n);
   ++pair.points;
   pair.normal_force += f_n;
   pair.force += point.force;
-  pair.normal += f_n * point.normal;
-  pair.position += f_n * point.position;
+  pair.normal += weight * point.normal;
+  pair.position += weight * point.position;
   pair.length += point.length;
+  return weight;
 }
 
 /// What is left of a network without grains of fewer than `least` contacts, one after the other.
@@ -60,17 +63,29 @@ Held held_by(int least, const ContactNetworkOf<Dim>& network) {
 }
 
 template <int Dim>
+void take_means(std::vector<GrainPairOf<Dim>>& pairs, std::span<const double> weight) {
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    pairs[k].position *= 1 / weight[k];
+    const double size = norm(pairs[k].normal);
+    if (size > 0) pairs[k].normal *= 1 / size;
+  }
+}
+
+template <int Dim>
 ContactNetworkOf<Dim> network_of(std::span<const ContactPointOf<Dim>> points, int grains) {
   using Point = ContactPointOf<Dim>;
   std::vector<Point> sorted;
   for (const Point& point : points)
-    if (point.a != point.b && dot(point.force, point.normal) > 0) sorted.push_back(seen_from_first(point));
+    if (point.a != point.b && dot(point.force, point.normal) != 0) sorted.push_back(seen_from_first(point));
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const Point& p, const Point& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
   ContactNetworkOf<Dim> network{.grains = grains, .pairs = {}, .walls = {}};
+  std::vector<double> weight_of_pairs, weight_of_walls;
   for (const Point& point : sorted) {
     auto& list = point.b < 0 ? network.walls : network.pairs;
-    if (list.empty() || list.back().a != point.a || list.back().b != point.b)
+    auto& weight = point.b < 0 ? weight_of_walls : weight_of_pairs;
+    if (list.empty() || list.back().a != point.a || list.back().b != point.b) {
+      weight.push_back(0);
       list.push_back({.a = point.a,
                       .b = point.b,
                       .points = 0,
@@ -79,14 +94,11 @@ ContactNetworkOf<Dim> network_of(std::span<const ContactPointOf<Dim>> points, in
                       .normal = {},
                       .position = {},
                       .image = point.image});
-    add(list.back(), point);
-  }
-  for (auto* list : {&network.pairs, &network.walls})
-    for (auto& pair : *list) {
-      pair.position *= 1 / pair.normal_force;
-      const double size = norm(pair.normal);
-      if (size > 0) pair.normal *= 1 / size;
     }
+    weight.back() += add(list.back(), point);
+  }
+  take_means<Dim>(network.pairs, weight_of_pairs);
+  take_means<Dim>(network.walls, weight_of_walls);
   return network;
 }
 

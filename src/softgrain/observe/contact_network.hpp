@@ -6,7 +6,7 @@
 
 namespace softgrain {
 
-/// A point where two grains, or a grain and a wall, push on each other.
+/// A point where two grains, or a grain and a wall, push on each other, or pull where they adhere.
 template <int Dim>
 struct ContactPointOf {
   int a = 0;          ///< a grain
@@ -22,22 +22,22 @@ using ContactPoint = ContactPointOf<2>;
 /// The number of wall w as a body of a ContactPoint: below every grain's.
 constexpr int wall_index(int wall) { return -1 - wall; }
 
-/// Two grains that push on each other, in however many points.
+/// Two grains that push on each other or adhere, in however many points.
 template <int Dim>
 struct GrainPairOf {
   int a = 0, b = 0;  ///< grains a < b, or a wall b < 0
   int points = 0;
-  double normal_force = 0;  ///< f_n = sum over the points of f . n [N/m in the plane], >= 0 in compression
+  double normal_force = 0;  ///< f_n = sum over the points of f . n [N/m in the plane], > 0 where they push
   Vec<Dim> force;           ///< of a on b [N/m in the plane]
-  Vec<Dim> normal;          ///< unit, from a to b: mean over the points, weighted by their normal force
+  Vec<Dim> normal;          ///< unit, from a to b: mean over the points, weighted by their |f . n|
   Vec<Dim> position;        ///< mean over the points, weighted alike [m]
   double length = 0;        ///< of the contact, sum over its points [m]
   Vec<Dim> image{};         ///< as of the points
 };
 using GrainPair = GrainPairOf<2>;
 
-/// The points of each pair of bodies taken together, ordered by (a, b); points without normal force (f . n <=
-/// 0) are left out. Pairs of grains first, those with walls (b < 0) in `walls`.
+/// The points of each pair of bodies taken together, ordered by (a, b); points without normal force are left
+/// out. Pairs of grains first, those with walls (b < 0) in `walls`.
 template <int Dim>
 struct ContactNetworkOf {
   int grains = 0;

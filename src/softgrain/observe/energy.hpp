@@ -11,7 +11,8 @@ struct Energies {
   double dissipation = 0;  ///< by contacts, friction, damping, rearrangement, and what time stepping took
   double contact = 0;      ///< of `dissipation`: in contacts between grains and with walls
   double friction = 0;     ///< of `contact`: by sliding
-  /// What is missing in wall_work = change of (kinetic + stored) + dissipation: how far the equations of
+  /// What is missing in wall_work = change of (kinetic + stored) + dissipation, with the energy of adhesion
+  /// where grains adhere (a column of its own): how far the equations of
   /// motion were not solved.
   double error = 0;
 };

@@ -24,7 +24,7 @@ ForceDistribution force_distribution(std::span<const GrainPair> pairs, int bins,
   for (const GrainPair& pair : pairs) result.mean += pair.normal_force / count;
   for (const GrainPair& pair : pairs) {
     const double bin = pair.normal_force / (result.mean * result.width);
-    if (bin < bins) result.density[static_cast<std::size_t>(bin)] += 1 / (count * result.width);
+    if (bin >= 0 && bin < bins) result.density[static_cast<std::size_t>(bin)] += 1 / (count * result.width);
   }
   return result;
 }

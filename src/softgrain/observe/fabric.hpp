@@ -23,7 +23,7 @@ struct ForceDistribution {
   double width = 0;             ///< of a bin, in <f>
 };
 
-/// Forces above `largest` <f> count in the mean and in the norm, but have no bin.
+/// Forces above `largest` <f>, and those that pull, count in the mean and in the norm, but have no bin.
 ForceDistribution force_distribution(std::span<const GrainPair> pairs, int bins = 20, double largest = 5);
 
 }  // namespace softgrain

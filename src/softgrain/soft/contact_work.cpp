@@ -23,7 +23,7 @@ void add_contact_work(Contacts<Dim> contacts, Impulses<Dim> impulse, const Outli
   const auto of_range = [&](int begin, int end) {
     WorkOfContacts sum;
     for (int c = begin; c < end; ++c) {
-      if (impulse[c][0] == 0) continue;
+      if (impulse[c] == Vec<Dim>{}) continue;
       const Vec<Dim> u = (1 / state.dt) * relative_displacement(contacts[c], state);
       sum.all -= dot(impulse_vector(contacts[c], impulse[c]), u);
       if (impulse[c][1] == 0 && impulse[c][Dim - 1] == 0) continue;
@@ -38,7 +38,7 @@ void add_contact_work(Contacts<Dim> contacts, Impulses<Dim> impulse, const Outli
   work.friction += sum.friction;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const int wall = contacts[c].wall;
-    if (impulse[c][0] == 0 || (wall < 0 && !state.cell.any())) continue;
+    if (impulse[c] == Vec<Dim>{} || (wall < 0 && !state.cell.any())) continue;
     const Vec<Dim> P = impulse_vector(contacts[c], impulse[c]);
     work.walls += dot(P, contacts[c].image_motion) / state.dt;
     if (wall < 0) continue;

@@ -42,6 +42,15 @@ void visit_stable_step(StableStep& stable, StateVisitor& visit) {
     throw IoError("the snapshot's arrays 'stable_step', 'until_look' and 'between_looks' cannot be");
 }
 
+/// sum a over sum p_n of all contacts; 0 where nothing touches.
+template <int Dim>
+double attraction_ratio(std::span<const Vec<Dim>> impulse, std::span<const double> attraction) {
+  double pulls = 0, pushes = 0;
+  for (const double a : attraction) pulls += a;
+  for (const Vec<Dim>& p : impulse) pushes += p[0];
+  return pushes > 0 ? pulls / pushes : 0;
+}
+
 }  // namespace
 
 template <class Dynamics>
@@ -102,6 +111,10 @@ Numbers ElasticGrains<Dynamics>::numbers(const Box<Dim>& box) const {
       std::count_if(impulse.begin(), impulse.end(), [](const Vec<Dim>& p) { return p[0] > 0; });
   numbers.emplace_back("contacts", contacts);
   if (const double J = least_J(grains); std::isfinite(J)) numbers.emplace_back("least_J", J);
+  if (dynamics_.adheres()) {
+    numbers.emplace_back("adhesion_energy", dynamics_.adhesion_energy);
+    numbers.emplace_back("attraction_ratio", attraction_ratio<Dim>(dynamics_.impulse, dynamics_.attraction));
+  }
   numbers.emplace_back("iterations", sums_.steps > 0 ? sums_.iterations / sums_.steps : 0);
   numbers.emplace_back("rejected_steps", sums_.rejected);
   if constexpr (Dim == 2)
@@ -130,6 +143,7 @@ SoftViewOf<ElasticGrains<Dynamics>::Dim> ElasticGrains<Dynamics>::view() const {
   return {.grains = dynamics_.grains,
           .contacts = dynamics_.contacts,
           .impulse = dynamics_.impulse,
+          .attraction = dynamics_.attraction,
           .impulse_time = dynamics_.impulse_time};
 }
 
@@ -181,6 +195,9 @@ void ElasticGrains<Dynamics>::visit(StateVisitor& visit) {
   visit_nodes(dynamics_.grains, visit);
   visit_contacts(dynamics_.grains, walls_, dynamics_.box.cell.any(), dynamics_.contacts, dynamics_.impulse,
                  visit);
+  if (dynamics_.adheres())
+    visit_attraction(dynamics_.contacts.size(), dynamics_.attraction, dynamics_.adhesion_energy,
+                     dynamics_.work.adhesion, visit);
   visit({"impulse_time", "s", Owner::run, Role::start, "the sub-step over which impulses acted"},
         dynamics_.impulse_time);
   visit_work(dynamics_.work, visit);

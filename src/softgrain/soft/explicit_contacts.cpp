@@ -32,8 +32,10 @@ void ExplicitStep<Dim>::find_contacts(double dt) {
   outline_.walls = box.walls;
   outline_.cell = box.cell;
   outline_.dt = dt;
-  if (impulse_time > 0 && impulse_time != dt)
-    for (Vec<Dim>& p : impulse) p *= dt / impulse_time;  // the same force
+  if (impulse_time > 0 && impulse_time != dt) {  // the same force
+    for (Vec<Dim>& p : impulse) p *= dt / impulse_time;
+    for (double& a : attraction) a *= dt / impulse_time;
+  }
   if constexpr (Dim == 3) {
     if (stable.until_search > 0) {
       --stable.until_search;
@@ -48,6 +50,8 @@ void ExplicitStep<Dim>::find_contacts(double dt) {
   }
   std::vector<ContactOf<Dim>> found = neighbours_.detect(grains, outline_, contact_margin);
   impulse = carried_impulses(grains, contacts, impulse, found);
+  if constexpr (Dim == 2)
+    if (adheres()) attraction = carried_attraction(grains, contacts, attraction, found);
   contacts = std::move(found);
 }
 
@@ -59,7 +63,7 @@ void ExplicitStep<Dim>::take_back_spin() {
     if (std::none_of(alone.begin(), alone.end(), [](const Wide& of_batch) { return any(of_batch > 0.0); }))
       return;
     grains.gather_outline(outline_.start);
-    work.contacts -= turn_back(grains, alone, contacts, impulse, outline_.start);
+    work.contacts -= turn_back(grains, alone, contacts, felt(), outline_.start);
   }
 }
 
@@ -100,9 +104,29 @@ void ExplicitStep<Dim>::add_contact_work(double dt) {
       if (press.share[w] != 0)
         outline_.walls[w].velocity =
             0.5 * (box.walls[w].velocity + (press.share[w] * press.speed) * box.walls[w].normal);
-  softgrain::add_contact_work<Dim>(contacts, impulse, outline_, work, box.impulse);
+  softgrain::add_contact_work<Dim>(contacts, felt(), outline_, work, box.impulse);
   outline_.walls = box.walls;
-  end_step_of_presses(box, contacts, impulse, dt);
+  end_step_of_presses(box, contacts, felt(), dt);
+}
+
+/// (p_n - a, p_t) of the contacts [N s/m in the plane]; until it is called again.
+template <int Dim>
+const std::vector<Vec<Dim>>& ExplicitStep<Dim>::felt() {
+  if constexpr (Dim == 2)
+    if (!attraction.empty()) return felt_ = felt_impulses(impulse, attraction);
+  return impulse;
+}
+
+/// What the energy of adhesion grew by, with the outlines at the end of the step.
+template <int Dim>
+void ExplicitStep<Dim>::add_adhesion() {
+  if constexpr (Dim == 2) {
+    if (!adheres()) return;
+    const double now = adhesion_.energy(
+        grains, contacts, [&](const OutlineContact& contact) { return gap_now(contact, outline_); });
+    work.adhesion += now - adhesion_energy;
+    adhesion_energy = now;
+  }
 }
 
 template class ExplicitStep<2>;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "softgrain/contact/nlgs.hpp"
+#include "softgrain/contact/adhesive_contacts.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/soft/equilibrium.hpp"
@@ -33,6 +33,12 @@ ExplicitStep<Dim>::ExplicitStep(GrainsOf<Dim> soft_grains, Box<Dim> box_of_grain
   require(grains.size() > 0, "there is no grain");
   require(options.damping >= 0, "damping must be >= 0, got {} 1/s", options.damping);
   friction_by_kind();  // says what is wrong with it
+  if constexpr (Dim == 2) {
+    adhesion_ = {grains, options.adhesion};
+    if (adheres())
+      neighbours_.keep(adhesion_.range(),
+                       [law = adhesion_](int kind, int other) { return law.adhere(kind, other); });
+  }
   if constexpr (Dim == 3)
     for (int k = 0; k < grains.kinds(); ++k) require_solid(grains.material(k));
   smallest_radius_ = grains.radius(0);
@@ -101,19 +107,26 @@ void ExplicitStep<Dim>::sub_step(double dt, SoftStepReport& report) {
   if constexpr (Dim == 2) take_back_spin();
   find_contacts(dt);
   LumpedSystem<Dim> system(contacts, outline_, outline_velocity_, inverse_mass_, bodies_, lumped_scratch_);
-  PushedBodies pressed = pressed_walls(box, contacts, impulse, dt);
+  AdhesiveContacts adhesive;
+  if constexpr (Dim == 2) {
+    adhesive = adhesion_.contacts(grains, contacts, outline_, false, attraction);
+    if (impulse_time <= 0) adhesion_energy = energy_at_start(adhesive);
+  }
+  PushedBodies pressed = pressed_walls(box, contacts, felt(), dt);
   system.push(pressed);
   kick(dt);
   const std::vector<double> friction = friction_by_kind().template of<Dim>(grains, contacts);
-  system.apply_impulses(impulse);
+  system.apply_impulses(felt());
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
-  const SolverReport solved = solve_nlgs<Dim>(system, std::span(impulse), friction, solver);
+  const SolverReport solved =
+      solve_adhesive<Dim>(system, adhesive, pressed, std::span(impulse), friction, solver);
   impulse_time = dt;
   move_presses(box, pressed, dt);
   outline_.walls = box.walls;
   drift_outline(dt);
   if (grains.has_history()) add_flow();
+  add_adhesion();
   add_contact_work(dt);
 
   ++report.iterations;

@@ -9,6 +9,7 @@
 #include "softgrain/soft/contact_of.hpp"
 #include "softgrain/soft/history.hpp"
 #include "softgrain/soft/lumped_contacts.hpp"
+#include "softgrain/soft/outline_adhesion.hpp"
 #include "softgrain/soft/pair_friction.hpp"
 #include "softgrain/soft/rigid_motion.hpp"
 #include "softgrain/soft/soft_grains.hpp"
@@ -25,6 +26,7 @@ struct ExplicitOptionsOf {
   double friction = 0;
   double wall_friction = 0;
   std::vector<PairFriction> pair_friction{};  ///< of pairs of kinds, instead of those two
+  std::vector<PairAdhesion> adhesion{};       ///< of pairs of kinds, in the plane; none: nothing attracts
   Vec<Dim> gravity{};                         ///< [m/s^2]
   double damping = 0;                         ///< zeta [1/s], see MassDamping
 };
@@ -46,7 +48,7 @@ struct StableStep {
 
 /// Soft grains between walls by symplectic Euler with contact dynamics, on the same data as ImplicitDynamics:
 ///   v_free = v + dt M^-1 (f_ext - f_int(x)),  v+ = v_free + M^-1 H p,  x+ = x + dt v+,
-///   0 <= g(x+) _|_ p_n >= 0,  |p_t| <= mu p_n,
+///   0 <= g(x+) _|_ p_n >= 0,  |p_t| <= mu p_n  (where outlines adhere H acts on (p_n - a, p_t)),
 /// with g(x+) linear about x + dt v: at x itself, sliding along an edge would drive vertices into it.
 /// In space contacts are looked for every few sub-steps and keep their places in between.
 template <int Dim>
@@ -65,15 +67,18 @@ class ExplicitStep {
   /// Impulse of the grains on a wall in the last step [N s/m in the plane].
   const Vec<Dim>& wall_impulse(int wall) const { return box.impulse[wall]; }
   double mean_radius() const { return mean_radius_; }
+  bool adheres() const { return adhesion_.any(); }
 
   GrainsOf<Dim> grains;
   Box<Dim> box;  ///< a model lends its own for a step
   ExplicitOptionsOf<Dim> options;
   std::vector<ContactOf<Dim>> contacts;
   std::vector<Vec<Dim>> impulse;
-  double impulse_time = 0;  ///< the step over which they acted [s]
-  WorkBudget work;          ///< since the start; there is no `inertia`
-  FlowOfGrains last_flow;   ///< of the last sub-step
+  std::vector<double> attraction;  ///< of `contacts`, a [N s/m]; empty if nothing adheres
+  double adhesion_energy = 0;      ///< at the end of the last step [J/m], <= 0
+  double impulse_time = 0;         ///< the step over which they acted [s]
+  WorkBudget work;                 ///< since the start; there is no `inertia`
+  FlowOfGrains last_flow;          ///< of the last sub-step
   StableStep stable;
 
  private:
@@ -98,6 +103,8 @@ class ExplicitStep {
   double sub_steps(double dt) const;
   void sub_step(double dt, SoftStepReport& report);
   void take_back_spin();
+  const std::vector<Vec<Dim>>& felt();
+  void add_adhesion();
   void find_contacts(double dt);
   void fly_outline(double dt);
   void kick(double dt);
@@ -116,6 +123,8 @@ class ExplicitStep {
 
   double mean_radius_ = 0, smallest_radius_ = 0;
   NeighboursOf<Dim> neighbours_;
+  OutlineAdhesion adhesion_;
+  std::vector<Vec<Dim>> felt_;
   OutlineStateOf<Dim> outline_;
   std::vector<Vec<Dim>> outline_velocity_, outline_velocity_start_;
   std::vector<double> inverse_mass_;  // (outline vertices)

@@ -14,9 +14,11 @@ constexpr double turn_over_walls = 3;
 
 }  // namespace
 
-/// Before the contacts are found anew: the system of the last iteration, free of impulses.
+/// Before the contacts are found anew: the system of the last iteration, free of impulses but attractions.
 void ImplicitDynamics::catch_problem(double dt) {
   ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt, scratch_);
+  for (std::size_t c = 0; c < attraction.size(); ++c)
+    if (attraction[c] > 0) system.apply_impulse(static_cast<int>(c), {-attraction[c], 0});
   caught = {contact_problem_of<2>(system, friction_of_contacts()), flat<2>(impulse)};
 }
 
@@ -28,7 +30,7 @@ void ImplicitDynamics::catch_problem(double dt) {
 /// friction nothing else does, and a grain that turns by a good part of itself in a step lets none converge
 /// (docs/decisions/0031). What this changes of the kinetic energy, backward Euler had taken.
 void ImplicitDynamics::balance_momentum(double dt) {
-  const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
+  const std::vector<Vec<2>> force = contact_forces(grains, contacts, felt(), dt);
   const double t = step_of_matrix(dt);
   double fastest = 0;
   for (const Wall<2>& wall : box.walls) fastest = std::max(fastest, turn_over_walls * norm(wall.velocity));
@@ -112,7 +114,7 @@ void ImplicitDynamics::add_work() {
       work.damping += shares[b].damping[lane];
       work.contacts += held_[b].couple[lane] * held_[b].wanted[lane];
     }
-  add_contact_work(contacts, impulse, outline_, work, box.impulse);
+  add_contact_work(contacts, felt(), outline_, work, box.impulse);
 }
 
 }  // namespace softgrain

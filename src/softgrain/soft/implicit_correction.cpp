@@ -39,7 +39,7 @@ Wide secant(const WideVectors& f, const WideVectors& f_before) {
 
 /// Solves A f = r + H p/dt and moves x by f and what the iterations before add to it.
 ImplicitDynamics::Imbalance ImplicitDynamics::correct(bool first, bool same_matrix) {
-  const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, outline_.dt);
+  const std::vector<Vec<2>> force = contact_forces(grains, contacts, felt(), outline_.dt);
   parallel_for(batches(), [&](int b) {
     const GrainBatch& batch = grains.batches[b];
     WideVectors& f = force_[b];

@@ -12,7 +12,7 @@ namespace softgrain {
 ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, SoftStepReport& report) {
   proximal_.assign(grains.outline_size(), {});
   if (!contacts.empty()) {
-    const std::vector<Vec<2>> force = contact_forces(grains, contacts, impulse, dt);
+    const std::vector<Vec<2>> force = contact_forces(grains, contacts, felt(), dt);
     for (int v = 0; v < grains.outline_size(); ++v) {
       const int g = grains.grain_of_vertex(v);
       const double length =

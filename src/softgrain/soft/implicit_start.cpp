@@ -23,9 +23,9 @@ void ImplicitDynamics::start(double dt) {
   damping_ = {options.damping, dt, box};
   contacts_start_ = contacts;
   impulse_start_ = impulse;
+  attraction_start_ = attraction;
   set_flying(dt);
-  if (impulse_time > 0)
-    for (Vec<2>& p : impulse) p *= dt / impulse_time;  // the same force
+  if (impulse_time > 0) scale_to(dt / impulse_time);  // the same force
   const Vec<2, Wide> fall{dt * dt * options.gravity[0], dt * dt * options.gravity[1]};
   parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];
@@ -54,13 +54,20 @@ void ImplicitDynamics::find_first_contacts() {
   outline_.cell = box.cell;
   contacts = neighbours_.detect(grains, outline_);
   impulse.assign(contacts.size(), {});
+  attraction.assign(adheres() ? contacts.size() : 0, 0.0);
+  adhesion_energy = energy_of_adhesion(contacts);
+}
+
+void ImplicitDynamics::scale_to(double factor) {
+  for (Vec<2>& p : impulse) p *= factor;
+  for (double& a : attraction) a *= factor;
 }
 
 /// Grains that carry contacts fly no more.
 void ImplicitDynamics::hold_touching() {
   std::vector<bool> touching(grains.size());
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    if (!(impulse[c][0] > 0)) continue;
+    if (!(impulse[c][0] > 0 || (adheres() && attraction[c] > 0))) continue;
     touching[grains.grain_of_vertex(contacts[c].vertex)] = true;
     if (contacts[c].wall < 0) touching[grains.grain_of_vertex(contacts[c].master[0])] = true;
   }
@@ -76,12 +83,13 @@ Vec<2, Wide> ImplicitDynamics::velocity_of_cell(std::size_t b) const {
 }
 
 /// All grains (lanes without one stay where they are), but in a step whose inertia A does not have those that
-/// carry contacts or would fly further than is trusted.
+/// carry contacts or would fly further than is trusted; in a quasi-static one those that adhere to others.
 void ImplicitDynamics::set_flying(double dt) {
   flying_.assign(grains.batches.size(), 1.0);
   for (int b = 0; b < batches(); ++b)
     for (int lane = 0; lane < Wide::size; ++lane)
       if (grains.batches[b].grain[lane] < 0) flying_[b].set(lane, 0);
+  if (adheres() && quasi_static(dt)) hold_touching();  // a fall would part them
   if (step_of_matrix(dt) == dt) return;
   hold_touching();
   for (int b = 0; b < batches(); ++b) {
@@ -107,6 +115,7 @@ void ImplicitDynamics::take_back() {
   box.cell = cell_start_;
   contacts = contacts_start_;
   impulse = impulse_start_;
+  attraction = attraction_start_;
 }
 
 }  // namespace softgrain

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "softgrain/contact/nlgs.hpp"
+#include "softgrain/contact/adhesive_contacts.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/soft/equilibrium.hpp"
@@ -49,6 +49,10 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains,
     : grains(std::move(soft_grains)), box(std::move(box_of_grains)), options(implicit_options) {
   require(grains.size() > 0, "there is no grain");
   friction_by_kind();  // says what is wrong with it
+  adhesion_ = {grains, options.adhesion};
+  if (adheres())
+    neighbours_.keep(adhesion_.range(),
+                     [law = adhesion_](int kind, int other) { return law.adhere(kind, other); });
   smallest_radius_ = grains.radius(0);
   for (int g = 0; g < grains.size(); ++g) {
     mean_radius_ += grains.radius(g) / grains.size();
@@ -157,21 +161,40 @@ int ImplicitDynamics::most_iterations(double dt) const {
 bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   grains.gather_outline(outline_.position);
   std::vector<OutlineContact> found = neighbours_.detect(grains, outline_);
-  impulse = carried_impulses(grains, contacts, impulse, found);
+  carry_to(found);
   contacts = std::move(found);
   ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt, scratch_);
-  PushedBodies pressed = pressed_walls(box, contacts, impulse, dt);
+  AdhesiveContacts adhesive = adhesion_.contacts(grains, contacts, outline_, quasi_static(dt), attraction);
+  PushedBodies pressed = pressed_walls(box, contacts, felt(), dt);
   system.push(pressed);
-  system.apply_impulses(impulse);
+  system.apply_impulses(felt());
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
   const bool floppy = step_of_matrix(dt) < dt && mean_contact_force(dt) < least_contact_force_;
   solver.tolerance = (floppy ? floppy_share : contact_share) * options.tolerance;
-  const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction_of_contacts(), solver);
+  const SolverReport solved =
+      solve_adhesive<2>(system, adhesive, pressed, std::span(impulse), friction_of_contacts(), solver);
   report.sweeps += solved.sweeps;
   press_moved_ = move_presses(box, pressed, dt);
   if (press_moved_ > 0) outline_.walls = box.walls;
   return solved.converged;
+}
+
+/// What was found last is given the impulses of the contacts before, and their attractions.
+void ImplicitDynamics::carry_to(std::span<const OutlineContact> found) {
+  impulse = carried_impulses(grains, contacts, impulse, found);
+  if (!adheres()) return;
+  attraction.resize(contacts.size());
+  attraction = carried_attraction(grains, contacts, attraction, found);
+}
+
+/// (p_n - a, p_t) of the contacts [N s/m]; until it is called again.
+const std::vector<Vec<2>>& ImplicitDynamics::felt() {
+  return attraction.empty() ? impulse : felt_ = felt_impulses(impulse, attraction);
+}
+
+double ImplicitDynamics::energy_of_adhesion(std::span<const OutlineContact> of_contacts) const {
+  return adhesion_.energy(grains, of_contacts, [](const OutlineContact& contact) { return contact.gap; });
 }
 
 /// Of the deepest vertex at the present positions, over the mean radius; keeps the contacts found.
@@ -210,9 +233,14 @@ ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& re
   if (step_of_matrix(dt) < dt) hold_touching();
   balance_momentum(dt);
   add_work();
-  end_step_of_presses(box, contacts, impulse, dt);
-  impulse = carried_impulses(grains, contacts, impulse, found_);
+  end_step_of_presses(box, contacts, felt(), dt);
+  carry_to(found_);
   contacts = std::move(found_);
+  if (adheres()) {
+    const double now = energy_of_adhesion(contacts);
+    work.adhesion += now - adhesion_energy;
+    adhesion_energy = now;
+  }
   impulse_time = dt;
   report.contacts = 0;
   double depths = 0;

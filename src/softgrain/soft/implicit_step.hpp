@@ -12,6 +12,7 @@
 #include "softgrain/model/work_budget.hpp"
 #include "softgrain/soft/elastic_contacts.hpp"
 #include "softgrain/soft/history.hpp"
+#include "softgrain/soft/outline_adhesion.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
 #include "softgrain/soft/pair_friction.hpp"
 #include "softgrain/soft/rigid_motion.hpp"
@@ -41,6 +42,7 @@ struct ImplicitOptions {
   double friction = 0;                         ///< mu between grains
   double wall_friction = 0;                    ///< mu against walls
   std::vector<PairFriction> pair_friction{};   ///< of pairs of kinds, instead of those two
+  std::vector<PairAdhesion> adhesion{};        ///< of pairs of kinds; none: nothing attracts
   Vec<2> gravity{};                            ///< [m/s^2]
   double damping = 0;                          ///< zeta [1/s], see MassDamping
 };
@@ -48,7 +50,8 @@ struct ImplicitOptions {
 /// Soft grains between walls by backward Euler with position-level contact (docs/theory.md, implicit MPM):
 ///   M (x - x_n - dt v_n)/dt^2 + f_int(x) = f_ext + H p/dt,   v = (x - x_n)/dt,
 /// (f_ext: gravity and damping, which is that of v_n),
-///   0 <= g(x) _|_ p_n >= 0,  |p_t| <= mu p_n.
+///   0 <= g(x) _|_ p_n >= 0,  |p_t| <= mu p_n;
+/// where outlines adhere H acts on (p_n - a(g), p_t) instead (AdhesiveContact).
 /// Newton's method detects contacts anew in every iteration; A = M/dt^2 + K + proximal term is factored once
 /// a step, and again where Newton's method needs many iterations; each grain follows the secant of its last
 /// two corrections (docs/decisions/0021).
@@ -73,12 +76,15 @@ class ImplicitDynamics {
   /// Impulse of the grains on a wall in the last step [N s/m].
   const Vec<2>& wall_impulse(int wall) const { return box.impulse[wall]; }
   double mean_radius() const { return mean_radius_; }
+  bool adheres() const { return adhesion_.any(); }
 
   SoftGrains grains;
   Box<2> box;  ///< a model lends its own for a step
   ImplicitOptions options;
   std::vector<OutlineContact> contacts;  ///< at the end of the last step
   std::vector<Vec<2>> impulse;           ///< of `contacts`, (p_n, p_t) [N s/m]
+  std::vector<double> attraction;        ///< of `contacts`, a [N s/m]; empty if nothing adheres
+  double adhesion_energy = 0;            ///< at the end of the last step [J/m], <= 0
   double impulse_time = 0;               ///< the (sub-)step over which `impulse` acted [s]
   double sub_step = 0;                   ///< the longest to try next [s]; 0: the whole step
   /// Sub-steps of that length that succeeded, and how many shall before twice the length is tried
@@ -140,6 +146,7 @@ class ImplicitDynamics {
   Vec<2, Wide> velocity_of_cell(std::size_t b) const;
   void hold_touching();
   void find_first_contacts();
+  void scale_to(double factor);
   void hold_spins(double dt);
   void hold_in_compliance(std::size_t b);
   void hold_increment(std::size_t b);
@@ -176,12 +183,16 @@ class ImplicitDynamics {
     return {grains.kinds(), options.friction, options.wall_friction, options.pair_friction};
   }
   std::vector<double> friction_of_contacts() const;
+  const std::vector<Vec<2>>& felt();
+  void carry_to(std::span<const OutlineContact> found);
+  double energy_of_adhesion(std::span<const OutlineContact> of_contacts) const;
 
   double mean_radius_ = 0, smallest_radius_ = 0;
   double explicit_step_ = 0;        // h/c [s]
   double wave_time_ = 0;            // R/c of the smallest grain and the fastest waves [s]
   double least_contact_force_ = 0;  // of a packing that carries something, of the softest kind [N/m]
   OutlineNeighbours neighbours_;
+  OutlineAdhesion adhesion_;
   std::vector<BatchedCholesky> matrix_;
   std::vector<OutlineCompliance> compliance_;
   ElasticScratch scratch_;
@@ -201,7 +212,8 @@ class ImplicitDynamics {
   PeriodicCell<2> cell_start_;
   double press_moved_ = 0;  // of a wall by the present iteration [m]
   std::vector<OutlineContact> contacts_start_, found_;
-  std::vector<Vec<2>> impulse_start_;
+  std::vector<Vec<2>> impulse_start_, felt_;
+  std::vector<double> attraction_start_;
   int failed_grain_ = -1;
   bool slow_ = false;  // the whole step is longer than the one whose inertia A has
   MassDamping<2> damping_;

@@ -115,11 +115,12 @@ template <int Dim>
 void LumpedSystem<Dim>::apply_impulses(std::span<const Vec<Dim>> impulse) {
   for_each_strip([&](int strip) {
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k)
-      if (const Vec<Dim>& p = impulse[rows_[k].contact]; p[0] > 0 && !of_bodies_.has(rows_[k].contact))
+      if (const Vec<Dim>& p = impulse[rows_[k].contact];
+          !(p == Vec<Dim>{}) && !of_bodies_.has(rows_[k].contact))
         apply_impulse(rows_[k], p);
   });
   for (const int c : of_bodies_.contacts())
-    if (impulse[c][0] > 0) of_bodies_.apply_impulse(c, impulse[c]);
+    if (!(impulse[c] == Vec<Dim>{})) of_bodies_.apply_impulse(c, impulse[c]);
 }
 
 /// Puts one contact right, and adds the violation that it showed.

@@ -125,7 +125,7 @@ void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineS
   double longest = 0;
   for (int v = 0; v < grains.outline_size(); ++v)
     longest = std::max(longest, norm(state.position[ring_of(grains, v).next(v)] - state.position[v]));
-  const double reach = longest + (largest_margin + skin_share) * segment_;
+  const double reach = longest + (largest_margin + skin_share) * segment_ + range_;
   std::optional<Images<2>> images;
   if (state.cell.any()) images.emplace(state.position, state.cell, reach);
   const std::span<const Vec<2>> position = images ? images->position : state.position;
@@ -153,16 +153,18 @@ void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineSta
     for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
       const double height = dot(x - state.walls[w].point, state.walls[w].normal);
       if (height > margin + segment_) continue;
-      if (const OutlineArc* arc = rigid_arc(grains, v)) {
+      const int grain = grains.grain_of_vertex(v);
+      const bool vertex_alone = vertices_only_ && vertices_only_(grains.kind(grain), -1);
+      if (const OutlineArc* arc = vertex_alone ? nullptr : rigid_arc(grains, v)) {
         const OutlineContact contact = rigid_wall_contact(grains, state, on_the_way_, w, v, *arc);
         if (contact.gap < margin) part.contacts.push_back(contact);
         continue;
       }
       const Ring ring = ring_of(grains, v);
-      const int grain = grains.grain_of_vertex(v), next = ring.next(v);
-      const OutlineContact contact =
-          wall_contact(state, w, {ring.previous(v), v, next, ring.next(next)}, height,
-                       grains.topology(grain).arc[v - ring.begin], grains.radius(grain));
+      const int next = ring.next(v);
+      const OutlineContact contact = wall_contact(
+          state, w, {ring.previous(v), v, next, ring.next(next)}, height,
+          vertex_alone ? OutlineArc{} : grains.topology(grain).arc[v - ring.begin], grains.radius(grain));
       if (contact.gap < margin) part.contacts.push_back(contact);
     }
     for (; candidate != part.candidates.end() && candidate->vertex == v; ++candidate) {
@@ -172,11 +174,14 @@ void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineSta
       const Vec<2> seen = x - shift;  // from the master
       candidate->nearest = nearest_vertex(ring, state.position, seen, candidate->nearest);
       const Vec<2> d = seen - state.position[candidate->nearest];
-      if (dot(d, d) > 9 * segment_ * segment_) continue;
+      const double furthest = 3 * segment_ + range_;
+      if (dot(d, d) > furthest * furthest) continue;
       const int start = facing_segment(ring, state.position, seen, candidate->nearest);
-      const OutlineArc* arc = grains.topology(grains.grain_of_vertex(candidate->nearest)).rigid()
-                                  ? rigid_arc(grains, v)
-                                  : nullptr;
+      const int master = grains.grain_of_vertex(candidate->nearest);
+      const bool vertex_alone =
+          !grains.topology(master).rigid() ||
+          (vertices_only_ && vertices_only_(grains.kind(grains.grain_of_vertex(v)), grains.kind(master)));
+      const OutlineArc* arc = vertex_alone ? nullptr : rigid_arc(grains, v);
       const double arc_rise = arc == nullptr ? 0 : segment_ / 2;  // more than that of an arc over its vertex
       if (surely_outside(state.position, ring, start, seen, margin + arc_rise)) continue;
       const double gap =
@@ -197,6 +202,12 @@ void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineSta
   }
 }
 
+void OutlineNeighbours::keep(double range, std::function<bool(int, int)> vertices_only) {
+  range_ = range;
+  vertices_only_ = std::move(vertices_only);
+  reference_.clear();
+}
+
 std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, const OutlineState& state,
                                                       double margin) {
   assert(margin <= largest_margin);
@@ -206,7 +217,7 @@ std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, 
     for (int v = parts_[k].begin; v < parts_[k].end; ++v) on_the_way_[v] = state.on_the_way(v);
   });
   parallel_for(static_cast<int>(parts_.size()),
-               [&](int k) { find_contacts(grains, state, margin * segment_, parts_[k]); });
+               [&](int k) { find_contacts(grains, state, std::max(margin * segment_, range_), parts_[k]); });
   std::size_t count = 0;
   for (const Part& part : parts_) count += part.contacts.size();
   std::vector<OutlineContact> contacts;

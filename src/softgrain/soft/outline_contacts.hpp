@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -70,6 +71,9 @@ struct OutlineContact {
 /// O(vertices).
 class OutlineNeighbours {
  public:
+  /// From now on contacts are kept up to at least this gap [m], and where vertices_only(kind, other kind or
+  /// -1 for walls) vertices bring no arcs: what acts across a gap is summed over places at even distances.
+  void keep(double range, std::function<bool(int, int)> vertices_only);
   /// All contacts with gap < margin, sorted by (vertex, master grain or wall); the margin is in units of the
   /// mean segment of the outlines, at most 0.5.
   std::vector<OutlineContact> detect(const SoftGrains& grains, const OutlineState& state,
@@ -94,8 +98,10 @@ class OutlineNeighbours {
   std::vector<Part> parts_;        // all vertices, in order
   std::vector<Vec<2>> reference_;  // positions when the candidates were found
   PeriodicCell<2> reference_cell_;
-  std::vector<Vec<2>> on_the_way_;  // where normals are taken [m]
-  double segment_ = 0;              // mean length of a segment of the round grains [m]
+  std::vector<Vec<2>> on_the_way_;               // where normals are taken [m]
+  double segment_ = 0;                           // mean length of a segment of the round grains [m]
+  double range_ = 0;                             // up to which contacts are kept in any case [m]
+  std::function<bool(int, int)> vertices_only_;  // or empty
 };
 
 /// Gap of a contact when its bodies have moved a little since it was found [m].

@@ -5,6 +5,7 @@
 
 #include "softgrain/math/tensor.hpp"
 #include "softgrain/soft/elastic_contacts.hpp"
+#include "softgrain/soft/outline_adhesion.hpp"
 #include "softgrain/soft/point_states.hpp"
 #include "softgrain/soft/soft_view.hpp"
 
@@ -46,7 +47,8 @@ Scene soft_scene(const SoftView& view) {
   std::vector<std::int64_t> grain_of_point, grain_of_vertex;
   std::vector<Vec<2>> outline;
   grains.gather_outline(outline);
-  const std::vector<Vec<2>> forces = contact_forces(grains, view.contacts, view.impulse, view.impulse_time);
+  const std::vector<Vec<2>> forces =
+      contact_forces(grains, view.contacts, felt_impulses(view.impulse, view.attraction), view.impulse_time);
   for (int g = 0; g < grains.size(); ++g) {
     const Topology& shape = grains.topology(g);
     grain_of_vertex.insert(grain_of_vertex.end(), grains.outline_end(g) - grains.outline_begin(g), g);

@@ -19,7 +19,9 @@ std::vector<ContactPoint> contact_points(const SoftView& view) {
   std::vector<ContactPoint> points;
   for (std::size_t c = 0; c < view.contacts.size(); ++c) {
     const OutlineContact& contact = view.contacts[c];
-    if (!(view.impulse[c][0] > 0)) continue;
+    const bool touches = view.impulse[c][0] > 0,
+               attracts = !view.attraction.empty() && view.attraction[c] > 0;
+    if (!touches && !attracts) continue;
     const int v = contact.vertex, g = grains.grain_of_vertex(v), begin = grains.outline_begin(g),
               n = grains.outline_end(g) - begin;
     const Vec<2>&before = x[begin + (v - begin + n - 1) % n], &after = x[begin + (v - begin + 1) % n];
@@ -28,12 +30,15 @@ std::vector<ContactPoint> contact_points(const SoftView& view) {
     if (wall)
       place +=
           0.5 * contact.share * (x[contact.master[2]] - x[contact.master[0]]) + contact.rise * contact.normal;
+    Vec<2> felt = view.impulse[c];
+    if (attracts) felt[0] -= view.attraction[c];
+    const double share = !touches ? 0 : wall ? 0.5 : 0.25;
     points.push_back({.a = g,
                       .b = wall ? wall_index(contact.wall) : grains.grain_of_vertex(contact.master[0]),
-                      .force = (-1 / view.impulse_time) * impulse_vector(contact, view.impulse[c]),
+                      .force = (-1 / view.impulse_time) * impulse_vector(contact, felt),
                       .normal = -contact.normal,
                       .position = place,
-                      .length = (wall ? 0.5 : 0.25) * (norm(x[v] - before) + norm(x[v] - after)),
+                      .length = share * (norm(x[v] - before) + norm(x[v] - after)),
                       .image = contact.image});
   }
   return points;
@@ -186,6 +191,21 @@ void visit_contacts(const SoftGrains& grains, int walls, bool repeats, std::vect
                         .slip = places[c][4],
                         .image = repeats ? images[c] : Vec<2>{}});
   }
+}
+
+void visit_attraction(std::size_t contacts, std::vector<double>& attraction, double& energy, double& gained,
+                      StateVisitor& visit) {
+  std::vector<Vec<1>> values;
+  for (const double a : attraction) values.push_back({a});
+  visit.list(
+      {"contact_attraction", "N s/m", Owner::contact, Role::start, "what surfaces that adhere pull with"},
+      values);
+  visit({"adhesion_energy", "J/m", Owner::run, Role::state, "of surfaces that adhere"}, energy);
+  visit({"work_of_adhesion", "J/m", Owner::run, Role::sum, "by which that grew"}, gained);
+  if (!visit.reads()) return;
+  if (values.size() != contacts) throw IoError("the snapshot's arrays of contacts have different lengths");
+  attraction.clear();
+  for (const Vec<1>& a : values) attraction.push_back(a[0]);
 }
 
 template BodiesOf<2> nodes_of(const GrainsOf<2>&);

@@ -15,13 +15,14 @@ template <int Dim>
 struct SoftViewOf {
   const GrainsOf<Dim>& grains;
   std::span<const ContactOf<Dim>> contacts;
-  std::span<const Vec<Dim>> impulse;  ///< impulses of `contacts`, (p_n, p_t) [N s/m in the plane]
-  double impulse_time = 0;            ///< time over which the impulses acted [s]
+  std::span<const Vec<Dim>> impulse;     ///< impulses of `contacts`, (p_n, p_t) [N s/m in the plane]
+  std::span<const double> attraction{};  ///< theirs, a [N s/m]; empty where nothing adheres
+  double impulse_time = 0;               ///< time over which the impulses acted [s]
 };
 using SoftView = SoftViewOf<2>;
 
-/// Contacts that carry impulse. A vertex takes half of the segments beside it, and half of that where the
-/// other grain's vertices touch too.
+/// Contacts that carry impulse, with what attracts. One that touches takes half of the segments beside its
+/// vertex, and half of that where the other grain's vertices touch too.
 std::vector<ContactPoint> contact_points(const SoftView& view);
 std::vector<ContactPointOf<3>> contact_points(const SoftViewOf<3>& view);
 
@@ -62,6 +63,9 @@ void visit_nodes(GrainsOf<Dim>& grains, StateVisitor& visit);
 /// and walls that are not there.
 void visit_contacts(const SoftGrains& grains, int walls, bool repeats, std::vector<OutlineContact>& contacts,
                     std::vector<Vec<2>>& impulse, StateVisitor& visit);
+/// Declares what attracts at the contacts, after these.
+void visit_attraction(std::size_t contacts, std::vector<double>& attraction, double& energy, double& gained,
+                      StateVisitor& visit);
 void visit_contacts(const SolidGrains& grains, int walls, bool repeats, std::vector<SurfaceContact>& contacts,
                     std::vector<Vec<3>>& impulse, StateVisitor& visit);
 

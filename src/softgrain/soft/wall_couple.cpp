@@ -34,7 +34,7 @@ std::vector<WallImpulse> wall_impulses(const SoftGrains& grains, std::span<const
                                        std::span<const Vec<2>> impulse, std::span<const Vec<2>> outline) {
   std::vector<WallImpulse> given(grains.size());
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    if (contacts[c].wall < 0 || impulse[c][0] == 0) continue;
+    if (contacts[c].wall < 0 || impulse[c] == Vec<2>{}) continue;
     const Vec<2> P = impulse_vector(contacts[c], impulse[c]);
     WallImpulse& to = given[grains.grain_of_vertex(contacts[c].vertex)];
     to.sum += P;

@@ -77,7 +77,19 @@ TEST_CASE("two grains that touch in many points are one pair with the sum of the
 }
 
 TEST_CASE("points that carry no force and points within one grain are no contacts") {
-  CHECK(contact_network(std::vector{push(0, 1, 0), push(1, 1, 5), push(1, 0, -2)}, 2).pairs.empty());
+  CHECK(contact_network(std::vector{push(0, 1, 0), push(1, 1, 5)}, 2).pairs.empty());
+}
+
+TEST_CASE("points that pull count in a pair: the force is what is left, the place their mean by size") {
+  std::vector<ContactPoint> points{push(0, 1, 3), push(0, 1, -2)};
+  points[0].position = {5, 0};
+  points[1].position = {10, 0};
+  const ContactNetwork network = contact_network(points, 2);
+  REQUIRE(network.pairs.size() == 1);
+  CHECK(network.pairs.front().normal_force == 1);
+  CHECK(network.pairs.front().force == Vec<2>{1, 0});
+  CHECK(network.pairs.front().position[0] == doctest::Approx(7));
+  CHECK(network.pairs.front().normal == Vec<2>{1, 0});
 }
 
 TEST_CASE("Z of a random packing equals that counted pair by pair") {

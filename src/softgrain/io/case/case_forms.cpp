@@ -16,9 +16,6 @@ FormKey stands_for(std::string name, std::vector<std::string> keys, std::string_
 FormKey word(std::string name, std::vector<std::string> words, std::vector<std::string> later, std::string_view text) {
   return {std::move(name), Takes::word, {}, text, std::move(words), std::move(later)};
 }
-FormKey only(std::string name, std::string value, std::string_view text) {
-  return {std::move(name), Takes::only, {}, text, {std::move(value)}, {"others"}};
-}
 FormKey number(std::string name, std::string_view unit, Range range, std::string_view text) {
   return {std::move(name), Takes::number, {}, text, {}, {}, unit, range};
 }
@@ -54,7 +51,8 @@ std::vector<FormKey> all_forms() {
 
       {"pair.between", Takes::texts, {}, "the two sides: names of kinds, or \"wall\""},
       stands_for("pair.friction", {"contact.friction", "contact.wall_friction"}, "coefficient of friction mu between the two: of grains, or of a grain and a wall"),
-      only("pair.surface_energy", "0", "adhesion between the two"),
+      stands_for("pair.surface_energy", {"contact.surface_energy", "contact.wall_surface_energy"}, "surface energy w of adhesion between the two: of grains, or of a grain and a wall; 0: they do not adhere"),
+      stands_for("pair.adhesion_range", {"contact.adhesion_range"}, "gap up to which the two attract each other"),
 
       {"sample.file", Takes::text, {}, "a CSV file with the places of the grains, instead of random ones: see below; from the folder of the case file"},
 

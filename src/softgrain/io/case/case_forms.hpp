@@ -12,13 +12,12 @@ enum class Takes {
   as_key,  ///< what the keys take that it stands for
   number,  ///< a number, or a quantity in `unit`
   word,    ///< one of `words`
-  only,    ///< the number words.front(); others come with later versions
   text,    ///< any text
   texts,   ///< a list of texts
 };
 
 /// A key of a case file that Case has no member for: another spelling of keys that are in the schema, a part
-/// of a pair or a stage, or a choice of which there is only one today.
+/// of a pair or a stage.
 struct FormKey {
   std::string name;  ///< with all its tables: "kind.law.young_modulus"
   Takes takes;

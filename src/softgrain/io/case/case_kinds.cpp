@@ -54,6 +54,14 @@ void for_each_value(const Case& c, int k, const Visit& visit) {
   }
 }
 
+/// visit(name, value) of what a pair says.
+template <class Visit>
+void for_each_number(const Case::Pair& pair, const Visit& visit) {
+  if (pair.friction) visit("friction", *pair.friction);
+  if (pair.surface_energy) visit("surface_energy", *pair.surface_energy);
+  if (pair.adhesion_range) visit("adhesion_range", *pair.adhesion_range);
+}
+
 std::string side_of(const Case& c, int kind) {
   return kind == Case::Pair::wall ? "wall" : c.kinds[kind].name;
 }
@@ -72,9 +80,12 @@ std::string kinds_text(const Case& c) {
       text += fmt::format("{} = {}\n", name, value);
     });
   }
-  for (const Case::Pair& pair : c.pairs)
-    text += fmt::format("\n[[pair]]\nbetween = [{}, {}]\nfriction = {}\n", Json(side_of(c, pair.kind)).dump(),
-                        Json(side_of(c, pair.other)).dump(), pair.friction);
+  for (const Case::Pair& pair : c.pairs) {
+    text += fmt::format("\n[[pair]]\nbetween = [{}, {}]\n", Json(side_of(c, pair.kind)).dump(),
+                        Json(side_of(c, pair.other)).dump());
+    for_each_number(pair,
+                    [&](const char* name, double value) { text += fmt::format("{} = {}\n", name, value); });
+  }
   return text;
 }
 
@@ -89,9 +100,11 @@ std::string kinds_json(const Case& c) {
     });
     json["kind"].push_back(kind);
   }
-  for (const Case::Pair& pair : c.pairs)
-    json["pair"].push_back(
-        {{"between", {side_of(c, pair.kind), side_of(c, pair.other)}}, {"friction", pair.friction}});
+  for (const Case::Pair& pair : c.pairs) {
+    Json one{{"between", {side_of(c, pair.kind), side_of(c, pair.other)}}};
+    for_each_number(pair, [&](const char* name, double value) { one[name] = value; });
+    json["pair"].push_back(one);
+  }
   return json.dump();
 }
 

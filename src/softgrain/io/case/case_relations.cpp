@@ -270,7 +270,7 @@ const std::vector<Relation>& case_relations() {
        path_incomplete},
       {{"experiment.dimension", "experiment.model", "experiment.loading", "mpm.integrator", "mpm.formulation",
         "mpm.law", "mpm.cells", "sample.placed", "box.x", "box.y", "box.gravity_x", "box.gravity_y",
-        "output.report"},
+        "contact.surface_energy", "contact.wall_surface_energy", "output.report"},
        not_yet_in_space},
       {{"experiment.loading", "box.x", "box.y", "box.gravity_x", "box.gravity_y"}, box_unfit},
   };

@@ -61,7 +61,6 @@ std::string accepted(const FormKey& form) {
   if (form.takes == Takes::number) return accepted(as_key(form));
   if (form.takes == Takes::text) return "a text";
   if (form.takes == Takes::texts) return "a list of two texts";
-  if (form.takes == Takes::only) return fmt::format("{}; others later", form.words.front());
   return fmt::format("\"{}\"{}", fmt::join(form.words, "\", \""),
                      form.later.empty() ? "" : fmt::format("; later {}", fmt::join(form.later, ", ")));
 }
@@ -73,7 +72,6 @@ Json form_value_schema(const FormKey& form) {
   if (form.takes == Takes::text) value = {{"type", "string"}};
   if (form.takes == Takes::texts) value = {{"type", "array"}, {"items", {{"type", "string"}}}};
   if (form.takes == Takes::word) value = {{"enum", form.words}};
-  if (form.takes == Takes::only) value = {{"const", std::stoi(form.words.front())}};
   value["description"] = fmt::format("{} ({})", form.text, accepted(form));
   return value;
 }

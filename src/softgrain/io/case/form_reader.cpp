@@ -19,7 +19,7 @@ struct LaterKey {
 constexpr std::array later_keys{
     LaterKey{"kind.surface", "grains are disks"},
     LaterKey{"pair.restitution", "contact.restitution holds for all pairs"},
-    LaterKey{"pair.adhesion", "grains and walls do not stick"},
+    LaterKey{"pair.adhesion", "pair.surface_energy makes grains and walls adhere"},
     LaterKey{"box.z", "the box of a case in space has walls all round"},
     LaterKey{"box.die_friction", "a [[pair]] between a kind and \"wall\" holds for all walls"},
     LaterKey{"stage.zz", "cases in space know the short paths of [loading] alone"},
@@ -147,7 +147,7 @@ void FormReader::give(const FormKey& form, const TomlValue& value, Origin origin
     const std::string& first = form.keys.front();
     if (form.name == "kind.diameter" && draft_.is_valid(first))  // also of one grain between walls
       draft_.the_case.grain.radius = draft_.the_case.sample.smallest_diameter / 2;
-  } else if (form.takes == Takes::word || form.takes == Takes::only) {
+  } else if (form.takes == Takes::word) {
     check_word(form, value, origin);
   } else if (form.takes == Takes::number) {
     if (const auto share = number(form, value, origin); share && *share != 1)
@@ -180,7 +180,7 @@ bool FormReader::check_word(const FormKey& form, const TomlValue& value, Origin 
   };
   if (is_word(form.words)) return true;
   if (value.at.line > 0) origin.at = value.at;
-  if (form.takes == Takes::only || is_word(form.later))
+  if (is_word(form.later))
     draft_.add(origin, fmt::format("not yet: {} = {} comes with a later version; today it is {}", form.name,
                                    word, form.words.front()));
   else
@@ -226,12 +226,10 @@ StageText FormReader::read_stage(const TomlValue::Table& table, Origin at) {
 
 void FormReader::read_pair(const TomlValue::Table& table, Origin at) {
   std::vector<std::string> sides;
-  const TomlValue* friction = nullptr;
-  Origin friction_at = at;
+  PairNumbers numbers;
   for_each_entry("pair", table, -1, [&](const FormKey& form, const TomlValue& value, Origin origin) {
     if (form.takes == Takes::texts) sides = texts_of(value), at = origin;
-    if (form.takes == Takes::only) check_word(form, value, origin);
-    if (form.takes == Takes::as_key) friction = &value, friction_at = origin;
+    if (form.takes == Takes::as_key) numbers.push_back({&form, &value, origin});
   });
   if (sides.size() != 2)
     return draft_.add(at,
@@ -252,11 +250,13 @@ void FormReader::read_pair(const TomlValue::Table& table, Origin at) {
     }
   }
   if (walls == 2) return draft_.add(at, "pair.between: two walls never meet");
-  if (friction == nullptr) return;
-  if (!kinds_.empty()) return add_pair(walls, sides, *friction, friction_at);
-  const char* key = walls == 1 ? "contact.wall_friction" : "contact.friction";
-  draft_.give(*find_key(key), walls == 1 ? "pair.friction of a wall" : "pair.friction", *friction,
-              friction_at);
+  if (numbers.empty()) return;
+  if (!kinds_.empty()) return add_pair(walls, sides, numbers);
+  for (const auto& [form, value, origin] : numbers) {  // the second key of two is that of walls
+    const std::string& key = walls == 1 ? form->keys.back() : form->keys.front();
+    draft_.give(*find_key(key), fmt::format("{}{}", form->name, walls == 1 ? " of a wall" : ""), *value,
+                origin);
+  }
 }
 
 /// A list where there are values, lognormal where there is a median.

@@ -59,7 +59,14 @@ class FormReader {
   void settle_models();
   void count_grains();
   void count_placed();
-  void add_pair(int walls, const std::vector<std::string>& sides, const TomlValue& friction, Origin origin);
+  /// What a table [[pair]] says but of its sides.
+  struct PairNumber {
+    const FormKey* form;
+    const TomlValue* value;
+    Origin origin;
+  };
+  using PairNumbers = std::vector<PairNumber>;
+  void add_pair(int walls, const std::vector<std::string>& sides, const PairNumbers& numbers);
   void read_pair(const TomlValue::Table& table, Origin at);
   StageText read_stage(const TomlValue::Table& table, Origin at);
   void give(const FormKey& form, const TomlValue& value, Origin origin);

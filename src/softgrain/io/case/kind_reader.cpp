@@ -72,23 +72,27 @@ bool FormReader::keep_key_of_kind(const std::string& name, const TomlValue& valu
   return true;
 }
 
-/// Friction of a pair of several kinds.
-void FormReader::add_pair(int walls, const std::vector<std::string>& sides, const TomlValue& friction,
-                          Origin origin) {
+/// Contact of a pair of several kinds.
+void FormReader::add_pair(int walls, const std::vector<std::string>& sides, const PairNumbers& numbers) {
   const std::vector<std::string> names = kind_names();
   const auto number_of = [&](const std::string& side) {
     return side == "wall" ? Case::Pair::wall
                           : static_cast<int>(std::ranges::find(names, side) - names.begin());
   };
-  const auto mu = number(*find_form("pair.friction"), friction, origin);
-  if (!mu) return;
-  Case::Pair pair{number_of(sides[0]), number_of(sides[1]), *mu};
+  Case::Pair pair{.kind = number_of(sides[0]), .other = number_of(sides[1])};
+  for (const auto& [form, value, origin] : numbers) {
+    const std::optional<double> given = number(*form, *value, origin);
+    if (!given) return;
+    (form->name == "pair.friction"         ? pair.friction
+     : form->name == "pair.surface_energy" ? pair.surface_energy
+                                           : pair.adhesion_range) = given;
+  }
   if (walls == 1 && pair.kind == Case::Pair::wall) std::swap(pair.kind, pair.other);
   for (const Case::Pair& before : draft_.the_case.pairs)
     if ((before.kind == pair.kind && before.other == pair.other) ||
         (before.kind == pair.other && before.other == pair.kind))
-      return draft_.add(
-          origin, fmt::format("pair.friction: two [[pair]] are between '{}' and '{}'", sides[0], sides[1]));
+      return draft_.add(numbers.front().origin, fmt::format("{}: two [[pair]] are between '{}' and '{}'",
+                                                            numbers.front().form->name, sides[0], sides[1]));
   draft_.the_case.pairs.push_back(pair);
 }
 

@@ -104,6 +104,12 @@ std::vector<Key> all_keys() {
       KEY(contact.friction, "", at_least(0),
           "coefficient of friction mu between grains; never inside one: bpm.inner_friction", with_pairs),
       KEY(contact.wall_friction, "", at_least(0), "coefficient of friction mu against walls"),
+      KEY(contact.surface_energy, "J/m^2", at_least(0),
+          "surface energy w of adhesion between grains: what it takes to part a unit of their surface; 0: they do not adhere", adhering_pairs),
+      KEY(contact.wall_surface_energy, "J/m^2", at_least(0), "the same between grains and walls", adhering),
+      KEY(contact.adhesion_range, "um", at_least(0),
+          "gap delta up to which surfaces that adhere attract each other, by a stress that falls from 2 w/delta to 0; auto: "
+          "so that the zone where they part spans three vertices of the outline", adhering, "auto"),
       KEY(contact.restitution, "", from_to(0, 1), "Newton's coefficient of restitution e_n", with_bpm),
       KEY(contact.activation, "", its_words(),
           "when a contact is active: always, so that it may close within the step; or when it is closed at mid-step, or "

@@ -45,6 +45,10 @@ inline constexpr Scope implicit{
     [](const Case& c) { return is_total_lagrangian(c) && c.mpm.integrator == Integrator::backward_euler; }};
 inline constexpr Scope with_pairs{"between the grains of a box",
                                   [](const Case& c) { return is_in_a_box(c) && c.sample.grains > 1; }};
+inline bool can_adhere(const Case& c) { return is_total_lagrangian(c) && !is_in_space(c); }
+inline constexpr Scope adhering{"on outlines in the plane (total_lagrangian mpm, rigid)", can_adhere};
+inline constexpr Scope adhering_pairs{"between outlines in a box in the plane (total_lagrangian mpm, rigid)",
+                                      [](const Case& c) { return can_adhere(c) && with_pairs.covers(c); }};
 inline bool is_placed(const Case& c) { return is_in_a_box(c) && !c.sample.placed.empty(); }
 inline bool is_random(const Case& c) { return is_in_a_box(c) && c.sample.placed.empty(); }
 inline bool has_sizes(const Case& c, SizeLaw law) { return is_random(c) && c.sample.sizes == law; }

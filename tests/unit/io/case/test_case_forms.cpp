@@ -107,8 +107,6 @@ TEST_CASE("what comes with later versions is refused by key and line, and says w
   check_not_yet("[[kind]]\nshape = 'ellipse'\n", "2:1", "today these are disks, or of the model \"rigid\"");
   check_not_yet("[[kind]]\nshape = 'outline'\n", "2:9", "today it is one of \"disk\", \"ellipse\"");
   check_not_yet("[box]\ndie_friction = 0.2\n", "2:1", "[[pair]]");
-  check_not_yet("[[kind]]\nname = 'a'\n[[pair]]\nbetween = ['a', 'a']\nsurface_energy = '0.05 J/m^2'\n",
-                "5:18", "today it is 0");
   check_not_yet("[[kind]]\nname = 'a'\n[[pair]]\nbetween = ['a', 'bottom']\n", "4:1", "is all of them");
 }
 

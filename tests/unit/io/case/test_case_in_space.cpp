@@ -40,6 +40,7 @@ TEST_CASE("what is not there yet in space is refused, with the line and a remedy
       {"box.x=periodic", "a periodic box"},
       {"box.gravity_y=-9.81", "gravity"},
       {"output.report=true", "the page of a run"},
+      {"contact.wall_surface_energy=0.1", "adhesion"},
       {"mpm.law=norton", "flows, creeps or relaxes"},
       {"mpm.cells=30", "more than 24 mpm.cells"}};
   for (const auto& [set, words] : later) {
