@@ -95,6 +95,8 @@ inline std::vector<TinyCase> tiny_cases() {
     else if (name == "rubber_sand" || name == "soft_rigid" || name == "compaction_3d" ||
              name == "sphere_walls")
       cases.push_back({name, source, tiny_path(name)});
+    else if (name == "sticky_grains")
+      cases.push_back({name, source, tiny_path(name), 1});
     else if (name == "biaxial" || name == "relaxation" || name == "shear")
       cases.push_back({name, source, tiny_path(name), name == "relaxation" ? 1U : 2U});
     else

@@ -94,9 +94,9 @@ SolverReport solve_adhesive(System& system, AdhesiveContacts& adhesion, PushedBo
   SolverOptions inner = options;  // what sweeps at a given a leave is noise to the next a
   inner.tolerance *= 0.02;
   inner.max_sweeps *= 4;
-  SolverReport report = solve_nlgs<Dim>(system, impulse, friction, inner);
   FixedPoint fixed_point;
   std::vector<double> change(impulse.size()), next;
+  SolverReport report = solve_nlgs<Dim>(system, impulse, friction, inner);
   for (int pass = 1;; ++pass) {
     const Violation violation =
         detail::attraction_change<Dim>(system, adhesion, pushed, std::span<const Vec<Dim>>(impulse), change);
@@ -105,8 +105,13 @@ SolverReport solve_adhesive(System& system, AdhesiveContacts& adhesion, PushedBo
     report.residual_max = std::max(report.residual_max, attracted.residual_max);
     report.converged = report.residual_mean <= options.tolerance &&
                        report.residual_max <= options.worst_factor * options.tolerance;
-    if (report.converged || pass == most_passes || !std::isfinite(report.residual_mean)) return report;
     next.assign(adhesion.attraction.begin(), adhesion.attraction.end());
+    if (report.converged) {  // what short steps change is below the tolerance, but adds up
+      for (std::size_t c = 0; c < next.size(); ++c) next[c] += change[c];
+      detail::set_attraction<Dim>(system, adhesion, pushed, next);
+      return report;
+    }
+    if (pass == most_passes || !std::isfinite(report.residual_mean)) return report;
     fixed_point.improve(next, change);
     detail::set_attraction<Dim>(system, adhesion, pushed, next);
     const int sweeps = report.sweeps;

@@ -217,7 +217,7 @@ std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, 
     for (int v = parts_[k].begin; v < parts_[k].end; ++v) on_the_way_[v] = state.on_the_way(v);
   });
   parallel_for(static_cast<int>(parts_.size()),
-               [&](int k) { find_contacts(grains, state, std::max(margin * segment_, range_), parts_[k]); });
+               [&](int k) { find_contacts(grains, state, margin * segment_ + range_, parts_[k]); });
   std::size_t count = 0;
   for (const Part& part : parts_) count += part.contacts.size();
   std::vector<OutlineContact> contacts;

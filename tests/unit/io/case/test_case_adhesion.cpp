@@ -72,7 +72,7 @@ TEST_CASE("the range of adhesion follows from the grid, so that three segments p
   CHECK(std::isinf(advise_on_adhesion(parse_sticky(sticky, {"contact.surface_energy=0"})).zone));
 }
 
-TEST_CASE("pairs of kinds adhere as their tables say, others as [contact] does") {
+TEST_CASE("pairs of kinds adhere as their tables say, others as the table of contact does") {
   const Case c = parse_sticky(sticky + kinds);
   const auto law_of = [&](int kind, int other) {
     for (const PairAdhesion& pair : adhesion_of(c))
@@ -90,7 +90,7 @@ TEST_CASE("pairs of kinds adhere as their tables say, others as [contact] does")
   CHECK(adhesion_of(again).size() == adhesion_of(c).size());
 }
 
-TEST_CASE("of one kind a pair says what [contact] says") {
+TEST_CASE("of one kind a pair says what the table of contact says") {
   const Case c = parse_sticky(
       "[experiment]\nloading = 'compaction'\nmodel = 'mpm'\n[[kind]]\nname = 'a'\n[[pair]]\nbetween = ['a', "
       "'wall']\nsurface_energy = '1 J/m^2'\nadhesion_range = '5 um'\n");
