@@ -218,12 +218,14 @@ void LoadingOf<Dim>::begin_stage(const Box<Dim>& box, double time) {
   for (int c = 0; c < 3; ++c) length_at_stage_[c] = length(box, c);
   if (!motion_.velocity) plan_rest();
   held_ = {};
-  const OfParts speed = press_speed_, force = press_force_, waiting = press_waiting_;
-  press_speed_ = press_force_ = press_waiting_ = {};
+  const OfParts speed = press_speed_, mean_speed = press_mean_speed_, force = press_force_,
+                waiting = press_waiting_;
+  press_speed_ = press_mean_speed_ = press_force_ = press_waiting_ = {};
   for (const Drive& drive : stage_now().drives) {
     if (drive.control != Control::stress) continue;
     const std::size_t part = number_of(drive.part);
     press_speed_[part] = speed[part];  // others begin at rest
+    press_mean_speed_[part] = mean_speed[part];
     press_waiting_[part] = waiting[part];
     press_force_[part] = force[part];
   }

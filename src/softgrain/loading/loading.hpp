@@ -152,7 +152,8 @@ class LoadingOf {
       stress_twice_{};         // mean of sigma over 0.1 % of strain at wall_velocity, and its mean [Pa]
   OfParts largest_{};          // so far [Pa]
   OfParts stress_at_stage_{};  // the mean where the stage began [Pa]
-  OfParts press_speed_{}, press_force_{}, press_waiting_{};  // of Press [m/s], [N/m], [s]
+  OfParts press_speed_{}, press_mean_speed_{}, press_force_{},
+      press_waiting_{};  // of Press [m/s], [N/m], [s]
 
   std::array<HeldStress, 4> held_{};  // by drive of the stage
   HeldStress unkept_;                 // of the first that was not kept
