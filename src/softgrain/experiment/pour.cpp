@@ -15,7 +15,7 @@ constexpr double loose = 0.4;
 /// Steps in which the smallest grain falls by its radius at full speed.
 constexpr double steps_a_radius = 25;
 /// At rest: the mean speed, over that of falling.
-constexpr double at_rest = 1e-4;
+constexpr double at_rest = 1e-5;
 /// Times the fall of the whole column, after which whatever has not come to rest never will.
 constexpr std::int64_t most_falls = 20;
 /// Of lists of pairs, over the smallest radius.

@@ -25,18 +25,21 @@ Vec<2> way(const BoxSample& sample, const PlacedGrain& a, const PlacedGrain& b) 
   return d;
 }
 
-/// Whether gravity cannot tip a grain: it lies on the bottom, or on others on both sides of its centre.
+/// Whether a grain can be at rest: it lies on the bottom, or touches others on both sides of its centre, or
+/// friction holds it between one below and one above.
 bool is_held(const BoxSample& sample, const PlacedGrain& grain) {
   const double near = 2e-3 * grain.radius;
   if (grain.centre[1] - grain.radius < near) return true;
   bool left = !sample.repeats[0] && grain.centre[0] - grain.radius < near;
   bool right = !sample.repeats[0] && sample.width - grain.centre[0] - grain.radius < near;
+  bool below = false, above = false;
   for (const PlacedGrain& other : sample.grains) {
     const Vec<2> d = way(sample, grain, other);
     if (&other == &grain || norm(d) - grain.radius - other.radius > near) continue;
     (d[0] < 0 ? left : right) = true;
+    (d[1] < 0 ? below : above) = true;
   }
-  return left && right;
+  return below && (above || (left && right));
 }
 
 /// Area of grains over that of the box between two heights, by points.
