@@ -12,7 +12,7 @@ SLOW = "slow"  # a quasi-static wall
 NODES = "nodes"  # contact on the nodes of the paper's lattice
 EARLY = "early"  # contact on outlines that are larger by half of the gap at which nodes feel each other
 HOOKE = "hooke"  # the law of small strain
-ATTRACTIONS = ((1, 0.0), (2, 0.0), (3, 0.0), (7, 0.3), (3, 0.3))  # (gamma, inner friction) that are tried besides the paper's (7, 0)
+ATTRACTIONS = ((1, 0.0), (3, 0.0), (7, 0.3), (2, 0.3))  # (gamma, inner friction) that are tried besides the paper's (7, 0)
 NODE_GAP = 1.10 * 0.058  # at which two grains meet on nodes, over R: 1.10 cells in the mean of directions and places
 PAPER_SPEED = "5 m/s"
 
@@ -103,7 +103,7 @@ def _packing(way, model, friction, seed, scale, speed):
     if model == "bpm":
         values |= {"time.step": "0.1 us", "bpm.primaries": scale.grain_primaries}
     else:
-        values |= {"mpm.cells": scale.cells, "time.step": "5 us", "loading.max_strain": 1,
+        values |= {"mpm.cells": scale.cells, "time.step": "5 us" if speed == PAPER_SPEED else "auto", "loading.max_strain": 1,
                    "loading.max_packing_fraction": scale.last_packing_fraction}
     if way == SLOW and model == "bpm":
         values |= {"sample.grains": scale.slow_grains, "loading.wall_velocity": "0.5 m/s", "time.step": "0.2 us"}

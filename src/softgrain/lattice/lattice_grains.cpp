@@ -89,6 +89,7 @@ std::vector<ContactPoint> LatticeGrains::contacts() const {
     const LatticeContact& contact = dynamics_.contacts[c];
     const Vec<2>& n = contact.normal;
     const Vec<2>& p = dynamics_.impulse[c];
+    if (!(p[0] > 0)) continue;
     const std::vector<Vec<2>>& outline = dynamics_.grains[contact.grain].outline;
     points.push_back({.a = contact.grain,
                       .b = contact.other >= 0 ? contact.other : wall_index(contact.wall),

@@ -196,7 +196,8 @@ std::string formulation_cannot(const Case& c) {
   if (updated && c.experiment.loading != LoadingPath::diametral &&
       c.experiment.loading != LoadingPath::compaction)
     return fmt::format(
-        "mpm.formulation \"updated_lagrangian\" needs experiment.loading \"diametral\" or \"compaction\", not "
+        "mpm.formulation \"updated_lagrangian\" needs experiment.loading \"diametral\" or \"compaction\", "
+        "not "
         "\"{}\"",
         word_of(c.experiment.loading));
   if (updated && (c.box.x == BoxEnd::periodic || c.box.y == BoxEnd::periodic))
