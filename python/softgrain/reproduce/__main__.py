@@ -11,7 +11,7 @@ from ..plot import save, style
 from ..sweep.execute import NOT_TRUSTED
 from ..sweep.state import doubts
 from . import causes, figures, page, tables, verdict, verdicts
-from .execute import RunFailed, execute
+from .execute import RunFailed, Workplace, execute
 from .plan import FAST, FIGURES, FRICTIONS, MODELS, SCALES, planned_runs
 from .results import read_results
 
@@ -28,7 +28,10 @@ def reproduce(options):
     output = Path(options.output)
     folder = output / "runs"
     program = os.environ.get("SOFTGRAIN_PROGRAM", "softgrain")
-    execute(runs, folder, program, options.jobs or os.cpu_count() or 1)
+    if options.no_runs:
+        runs = [run for run in runs if Workplace(program, folder).is_done(run)]
+    else:
+        execute(runs, folder, program, options.jobs or os.cpu_count() or 1)
     results = read_results(folder, runs)
     paths = draw(results, wanted, output)
     tables.write(results, output)

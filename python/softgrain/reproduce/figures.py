@@ -8,7 +8,7 @@ from matplotlib.colors import PowerNorm
 from matplotlib.figure import Figure
 
 from .. import measure
-from ..plot.style import BLUE, DOUBLE_COLUMN, GREEN, GREY, INK, MM, PURPLE, SKY, VERMILLION
+from ..plot.style import BLUE, DOUBLE_COLUMN, GREEN, GREY, INK, MM, ORANGE, PURPLE, SKY, VERMILLION
 from .curves import REFERENCE_PACKING_FRACTION, band, coordination_law
 from .plan import EARLY, FAST, FRICTIONS, MODELS, NODES, SLOW
 from .single_grain import approach, johnson_force, paper_force, reduced_force
@@ -16,7 +16,8 @@ from .single_grain import approach, johnson_force, paper_force, reduced_force
 HEIGHT, LOW_HEIGHT = 62, 42  # [mm]
 LOOKS = {("bpm", 0.0): (VERMILLION, "-"), ("bpm", 0.5): (VERMILLION, "--"),
          ("mpm", 0.0): (BLUE, "-"), ("mpm", 0.5): (BLUE, "--")}
-ELASTIC = {"grain_mpm": ("neo-Hookean", BLUE), "grain_mpm_hooke": ("small-strain Hooke", GREEN)}
+ELASTIC = {"grain_mpm": ("neo-Hookean", BLUE), "grain_mpm_hooke": ("small-strain Hooke", GREEN),
+           "grain_mpm_nodes": ("neo-Hookean on grid nodes", ORANGE)}
 STAGES = (0.0, 0.2, 0.3, 9.9)  # strains of the pictures; the last one is the end
 
 
@@ -42,6 +43,8 @@ def draw_fig1(results):
     left.set(xlabel=r"axial strain $\varepsilon$", ylabel=r"$\sigma$ [MPa]", title="bonded particles",
              xlim=(0, None), ylim=(0, 1.5 * highest))
     for name, (label, colour) in ELASTIC.items():
+        if name not in results.grains:
+            continue
         run = results.grains[name][0]
         middle.plot(run.series["strain"], measure.vertical_stress(run.series) / 1e6, color=colour, label=label)
         strain, force = reduced_force(run)

@@ -13,6 +13,7 @@ NODES = "nodes"  # contact on the nodes of the paper's lattice
 EARLY = "early"  # contact on outlines that are larger by half of the gap at which nodes feel each other
 HOOKE = "hooke"  # the law of small strain
 ATTRACTIONS = ((1, 0.0), (3, 0.0), (7, 0.3), (2, 0.3))  # (gamma, inner friction) that are tried besides the paper's (7, 0)
+NODES_CELLS = 12  # of the smallest grain: the lattice has the paper's cell, 0.058 of the mean radius
 NODE_GAP = 1.10 * 0.058  # at which two grains meet on nodes, over R: 1.10 cells in the mean of directions and places
 PAPER_SPEED = "5 m/s"
 
@@ -78,6 +79,10 @@ SCALES = {
 }
 
 
+ON_NODES = {"mpm.formulation": "updated_lagrangian", "mpm.shape_functions": "bilinear", "mpm.contact_on": "grid_nodes",
+            "time.step": "auto"}
+
+
 def packing_name(way, model, friction, seed):
     return f"{way}_{model}_mu{friction:g}_seed{seed}"
 
@@ -110,9 +115,8 @@ def _packing(way, model, friction, seed, scale, speed):
     elif way == SLOW:
         values |= {"mpm.cells": scale.slow_cells, "loading.wall_velocity": "quasi-static", "time.step": "auto"}
     elif way == NODES:
-        values |= {"sample.grains": scale.nodes_grains, "mpm.formulation": "updated_lagrangian",
-                   "mpm.shape_functions": "bilinear", "mpm.contact_on": "grid_nodes", "time.step": "auto",
-                   "loading.max_packing_fraction": 0, "loading.max_strain": 0.13}
+        values |= {"sample.grains": scale.nodes_grains, **ON_NODES, "mpm.cells": NODES_CELLS, "loading.max_packing_fraction": 0,
+                   "loading.max_strain": 0.3}
     elif way == EARLY:
         values |= {"sample.packing_fraction": round(START_PACKING_FRACTION * (1 + NODE_GAP / 2) ** 2, 4),
                    "mpm.cells": scale.slow_cells, "loading.max_packing_fraction": 0, "loading.max_strain": 0.13}
@@ -134,4 +138,5 @@ def _single_grains(scale):
           for law in ATTRACTIONS),
         PlannedRun("grain_mpm", "diametral-mpm", elastic),
         PlannedRun("grain_mpm_hooke", "diametral-mpm", elastic | {"mpm.law": "small_strain_hooke"}),
+        PlannedRun("grain_mpm_nodes", "diametral-mpm", elastic | ON_NODES | {"mpm.cells": 16, "loading.wall_velocity": "1 m/s"}),
     ]

@@ -1,0 +1,104 @@
+"""How the exponent of Z - Z_c ~ (Phi - Phi_c)^a depends on Phi_c, on the range of the fit and on what Z counts.
+
+    exponents.py OUT=CSV ... -o DIR
+
+OUT names the rows, CSV is a table of `softgrain reproduce` (packing_*.csv, slow_*.csv) or experiments/jamming/results/jamming.csv.
+Writes DIR/exponents.csv and DIR/exponents.png: mean over the samples, their standard deviation, and the 95 % interval of the mean.
+"""
+
+import argparse
+import csv
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from scipy.stats import t as student
+
+LEAST = 0.01  # of Phi beyond Phi_c where a fit begins
+CENTRES, LASTS = (0.78, 0.80, 0.82, 0.84, 0.85, 0.86), (0.90, 0.96, 1.0)
+KINDS = ("z", "z_no_rattlers", "z_with_walls")
+HEADER = ("runs", "friction", "Z", "Phi_c", "last Phi", "samples", "exponent", "standard deviation", "half of the 95 % interval")
+
+
+def samples(path):
+    """{(friction, seed): {column: values}} of one table; the friction stands in a column or in the name, as in mu0.5."""
+    found = {}
+    with open(path, newline="") as file:
+        for row in csv.DictReader(file):
+            friction = row.get("friction") or path.stem.partition("_mu")[2]
+            found.setdefault((float(friction), int(row["seed"])), []).append(row)
+    return {key: {name: np.array([float(row[name]) for row in rows]) for name in rows[0]} for key, rows in found.items()}
+
+
+def exponent(phi, z, centre, last):
+    """Slope of ln(Z - Z_c) over ln(Phi - Phi_c); None with fewer than five rows, or if Z does not rise."""
+    start = np.interp(centre, phi, z)
+    rows = (phi > centre + LEAST) & (phi <= last) & (z > start)
+    if np.count_nonzero(rows) < 5 or phi[0] > centre or phi[-1] < last - 0.02:
+        return None
+    return float(np.polyfit(np.log(phi[rows] - centre), np.log(z[rows] - start), 1)[0])
+
+
+def table(runs):
+    """Rows under HEADER of {name: path}."""
+    rows = []
+    for name, path in runs.items():
+        found = samples(path)
+        for friction in sorted({key[0] for key in found}):
+            series = [values for (mu, _), values in found.items() if mu == friction]
+            for kind in KINDS:
+                if kind not in series[0]:
+                    continue
+                for centre in CENTRES:
+                    for last in LASTS:
+                        values = [a for a in (exponent(s["phi_0"], s[kind], centre, last) for s in series) if a is not None]
+                        if values:
+                            rows.append((name, friction, kind, centre, last, len(values), np.mean(values), np.std(values), interval(values)))
+    return rows
+
+
+def interval(values):
+    """Half of the 95 % interval of the mean; nan of one."""
+    if len(values) < 2:
+        return float("nan")
+    return student.ppf(0.975, len(values) - 1) * np.std(values, ddof=1) / np.sqrt(len(values))
+
+
+def draw(rows, path):
+    figure, panels = plt.subplots(1, len(KINDS), figsize=(7.1, 2.6), layout="constrained", sharey=True)
+    last = LASTS[1]
+    for axes, kind in zip(panels, KINDS):
+        kinds = sorted({(row[0], row[1]) for row in rows if row[2] == kind})
+        for name, friction in kinds:
+            some = np.array([(row[3], row[6], row[7]) for row in rows if row[:3] == (name, friction, kind) and row[4] == last])
+            if some.size:
+                axes.errorbar(*some.T, marker="o", ms=3, lw=0.8, capsize=2, label=rf"{name}, $\mu = {friction:g}$")
+        axes.axhline(0.5, color="0.6", lw=0.6)
+        axes.set(xlabel=r"$\Phi_c$", title=kind.replace("_", " "), ylim=(0, 1.6))
+    panels[0].set_ylabel(f"exponent, fitted to $\\Phi$ = {last}")
+    panels[0].legend(frameon=False, fontsize=6)
+    figure.savefig(path, dpi=150)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("runs", nargs="+", metavar="NAME=CSV")
+    parser.add_argument("-o", "--output", type=Path, required=True)
+    options = parser.parse_args()
+    named = {}
+    for word in options.runs:
+        name, _, path = word.partition("=")
+        named[name] = Path(path)
+    rows = table(named)
+    with open(options.output / "exponents.csv", "w", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(HEADER)
+        writer.writerows([f"{value:.3g}" if isinstance(value, float) else value for value in row] for row in rows)
+    draw(rows, options.output / "exponents.png")
+
+
+if __name__ == "__main__":
+    main()
