@@ -42,19 +42,24 @@ def _single_grains(results):
     runs = results.grains["grain_bpm"]
     plateaus = [measure.plateau(*_loading(run)) for run in runs]
     linear = Spread.of([100 * linear_strain(*_loading(run)) for run in runs])
-    serration = Spread.of([100 * flat.deviation / flat.mean for flat in plateaus])
+    serration = Spread.of([100 * flat.deviation / flat.mean for flat in map(_smooth_plateau, runs)])
     threshold = Spread.of([flat.mean / measure.characteristic_stress(run) for flat, run in zip(plateaus, runs)])
     pieces = max(run.series["clusters"].max() for run in runs)
     yield judge("1", "BPM: linear up to a strain of about 2 %", f"to {linear.text(1)} % (within 10 % of the line)",
                 1 <= linear.mean <= 4)
     yield judge("1", "BPM: then plastic at a constant threshold",
-                f"{Spread.of([flat.mean / 1e6 for flat in plateaus]).text(3)} MPa, serrations of {serration.text(0)} %",
+                f"{Spread.of([flat.mean / 1e6 for flat in plateaus]).text(3)} MPa, serrations of {serration.text(0)} % (of means over 1 %)",
                 serration.mean < 30)
     yield judge("1", "BPM: the threshold is almost equal to sigma_I = F0/<a0>", f"{threshold.text()} sigma_I",
                 _is_threshold(threshold.mean), _attractions(results))
     yield _unloading(runs)
     yield judge("1", "BPM: the grain does not break", f"{pieces:.0f} piece", pieces == 1)
     yield from _elastic_grain(results)
+
+
+def _smooth_plateau(run):
+    strain, stress = _loading(run)
+    return measure.plateau(strain, measure.moving_mean(strain, stress))
 
 
 def _is_threshold(share):
