@@ -17,7 +17,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 from scipy.stats import t as student
 
-LEAST = 0.01  # of Phi beyond Phi_c where a fit begins
 CENTRES, LASTS = (0.78, 0.80, 0.82, 0.84, 0.85, 0.86), (0.90, 0.96, 1.0)
 KINDS = ("z", "z_no_rattlers", "z_with_walls")
 HEADER = ("runs", "friction", "Z", "Phi_c", "last Phi", "samples", "exponent", "standard deviation", "half of the 95 % interval")
@@ -34,12 +33,19 @@ def samples(path):
 
 
 def exponent(phi, z, centre, last):
-    """Slope of ln(Z - Z_c) over ln(Phi - Phi_c); None with fewer than five rows, or if Z does not rise."""
-    start = np.interp(centre, phi, z)
-    rows = (phi > centre + LEAST) & (phi <= last) & (z > start)
-    if np.count_nonzero(rows) < 5 or phi[0] > centre or phi[-1] < last - 0.02:
+    """a of Z = Z_c + A (Phi - Phi_c)^a by least squares, Z_c and A free; None where the rows do not span the range."""
+    rows = (phi >= centre) & (phi <= last)
+    x, z = phi[rows] - centre, z[rows]
+    if x.size < 6 or phi[0] > centre or phi[-1] < last - 0.02:
         return None
-    return float(np.polyfit(np.log(phi[rows] - centre), np.log(z[rows] - start), 1)[0])
+    exponents = np.arange(0.05, 2.5, 0.01)
+    return float(exponents[np.argmin([missed(x, z, a) for a in exponents])])
+
+
+def missed(x, z, a):
+    """What the best Z_c and A leave, sum of squares."""
+    rows = np.column_stack([np.ones_like(x), x**a])
+    return ((rows @ np.linalg.lstsq(rows, z, rcond=None)[0] - z) ** 2).sum()
 
 
 def table(runs):
@@ -69,7 +75,7 @@ def interval(values):
 
 def draw(rows, path):
     figure, panels = plt.subplots(1, len(KINDS), figsize=(7.1, 2.6), layout="constrained", sharey=True)
-    last = LASTS[1]
+    last = LASTS[0]
     for axes, kind in zip(panels, KINDS):
         kinds = sorted({(row[0], row[1]) for row in rows if row[2] == kind})
         for name, friction in kinds:

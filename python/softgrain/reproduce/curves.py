@@ -63,30 +63,41 @@ def compaction(run):
 
 @dataclass(frozen=True)
 class PowerLaw:
-    """Z - Z0 = A (Phi - Phi_c)^exponent, with the 95 % confidence interval of the fit alone."""
+    """Z = Z0 + A (Phi - Phi_c)^exponent, with the 95 % confidence interval of the exponent by the fit alone."""
 
     exponent: float
     half_width: float
-    z0: float  # Z at Phi_c
-    z1: float  # the largest Z
+    z0: float
+    prefactor: float  # A
 
 
-def coordination_law(curve, least=0.01, phi_c=REFERENCE_PACKING_FRACTION, last=np.inf, name="z"):
-    """The free exponent, by least squares of the logarithms from Phi_c + least to `last`. None with too few samples.
+def coordination_law(curve, phi_c=REFERENCE_PACKING_FRACTION, last=1.0, name="z"):
+    """Least squares of Z from Phi_c to `last`, Z0 and A free as well: one noisy value at Phi_c decides nothing. None with
+    too few samples, or where Z does not rise.
 
     Neighbouring samples are not independent: the interval takes one independent sample per WINDOW of strain."""
-    z = getattr(curve, name)
-    z0 = float(np.interp(phi_c, curve.phi, z))
-    beyond = (curve.phi > phi_c + least) & (curve.phi <= last) & (z > z0)
-    if np.count_nonzero(beyond) < 5:
+    rows = (curve.phi >= phi_c) & (curve.phi <= last)
+    x, z = curve.phi[rows] - phi_c, getattr(curve, name)[rows]
+    if x.size < 6 or np.ptp(z) == 0:
         return None
-    x = np.log(curve.phi[beyond] - phi_c)
-    y = np.log(z[beyond] - z0)
-    (slope, intercept), spread = np.polyfit(x, y, 1), x - x.mean()
-    residual = y - slope * x - intercept
-    independent = max(3.0, np.ptp(curve.strain[beyond]) / WINDOW)
-    error = np.sqrt(residual.var() / (independent - 2 + 1e-9) / spread.var())
-    return PowerLaw(float(slope), float(1.96 * error), z0, float(z.max()))
+    exponents = np.arange(0.05, 2.5, 0.01)
+    exponent = exponents[np.argmin([_power_fit(x, z, a)[1] for a in exponents])]
+    exponents = exponent + np.arange(-0.01, 0.0101, 0.0005)
+    exponent = float(exponents[np.argmin([_power_fit(x, z, a)[1] for a in exponents])])
+    (z0, prefactor), squares = _power_fit(x, z, exponent)
+    inside = x > 0
+    slopes = np.column_stack([np.ones_like(x), x**exponent, np.zeros_like(x)])
+    slopes[inside, 2] = prefactor * x[inside] ** exponent * np.log(x[inside])
+    independent = max(4.0, np.ptp(curve.strain[rows]) / WINDOW)
+    variance = squares / (independent - 3) * np.linalg.pinv(slopes.T @ slopes)[2, 2] if prefactor else np.inf
+    return PowerLaw(exponent, float(1.96 * np.sqrt(variance)), float(z0), float(prefactor)) if prefactor > 0 else None
+
+
+def _power_fit(x, z, exponent):
+    """(Z0, A) of Z = Z0 + A x^exponent, and the sum of the squares that are left."""
+    rows = np.column_stack([np.ones_like(x), x**exponent])
+    found = np.linalg.lstsq(rows, z, rcond=None)[0]
+    return found, float(((rows @ found - z) ** 2).sum())
 
 
 def curvature(curve, last=np.inf):

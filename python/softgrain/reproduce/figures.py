@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from .. import measure
 from ..plot.style import BLUE, DOUBLE_COLUMN, GREEN, GREY, INK, MM, ORANGE, PURPLE, SKY, VERMILLION
-from .curves import REFERENCE_PACKING_FRACTION, band, coordination_law
+from .curves import REFERENCE_PACKING_FRACTION, band
 from .plan import EARLY, FAST, FRICTIONS, MODELS, NODES, SLOW
 from .single_grain import approach, johnson_force, paper_force, reduced_force
 
@@ -126,10 +126,9 @@ def draw_fig4(results):
 
 
 def _scaled_coordination(curve):
-    law = coordination_law(curve)
-    if law is None:
-        return np.full_like(curve.z, np.nan)
-    return np.maximum((curve.z - law.z0) / (law.z1 - law.z0), 1e-3)
+    """(Z - Z0)/(Z1 - Z0), Z0 at Phi = 0.8 and Z1 at Phi = 1, as the paper scales it."""
+    start, end = np.interp((REFERENCE_PACKING_FRACTION, 1.0), curve.phi, curve.z)
+    return np.maximum((curve.z - start) / (end - start), 1e-3)
 
 
 def draw_packing(run):

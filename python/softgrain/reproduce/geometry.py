@@ -48,3 +48,17 @@ def coordination_of_inner(snapshot):
     inner = np.ones(grains, bool)
     inner[a[pushes & is_wall]] = False
     return float(neighbours[inner].mean()) if inner.any() else float("nan")
+
+
+def coordination_of_load(snapshot, share=0.1):
+    """Z = 2 N_pairs/N_grains of pairs of grains that bear more than `share` of the mean normal force of a pair.
+
+    On nodes, grains that are near push on each other all the time, most of them hardly at all."""
+    table = snapshot.contact_table()
+    between = (table["wall"] < 0) & (table["grain_a"] != table["grain_b"])
+    pair = np.sort(np.column_stack([table["grain_a"], table["grain_b"]])[between], axis=1)
+    if not len(pair):
+        return 0.0
+    _, of_pair = np.unique(pair, axis=0, return_inverse=True)
+    force = np.bincount(of_pair.ravel(), table["normal_force"][between])
+    return 2 * float(np.count_nonzero(force > share * force.mean())) / (int(snapshot.outlines["grain"].max()) + 1)
