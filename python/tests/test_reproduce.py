@@ -141,6 +141,26 @@ class Neighbours(unittest.TestCase):
         self.assertAlmostEqual(geometry.coordination_of_inner(snapshot), 2)
 
 
+class Onsets(unittest.TestCase):
+    def test_a_coordination_of_snapshots_is_followed_from_one_to_the_next(self):
+        class Made:
+            times = np.array([0.0, 1.0, 2.0, 3.0])
+            series = {"time": times, "strain": 0.05 * times, "phi_0": 0.7 + 0.03 * times}
+
+            def __getitem__(self, index):
+                return index
+        strain, phi = verdicts.onset_of(Made(), lambda k: 2.0 * k)
+        self.assertAlmostEqual(strain, 0.075)
+        self.assertAlmostEqual(phi, 0.745)
+        self.assertIsNone(verdicts.onset_of(Made(), lambda k: 1.0))
+        self.assertEqual(verdicts.onset_of(Made(), lambda k: 3.5), (0.0, 0.7))
+
+    def test_a_tenth_of_the_mean_force_is_load(self):
+        contacts = {"pair": np.array([[0, 1], [1, 2], [2, 3], [3, 5]]), "force": np.array([100.0, 100.0, 1.0, 1000.0]),
+                    "position": np.zeros((4, 2)), "normal": np.ones((4, 2))}
+        self.assertAlmostEqual(geometry.coordination_of_load(Neighbours().snapshot(contacts)), 2 * 2 / 5)
+
+
 class Plans(unittest.TestCase):
     def test_every_scale_compares_both_models_on_the_same_samples(self):
         for scale in plan.SCALES.values():

@@ -34,7 +34,9 @@ TEST_CASE(
   const TemporaryDirectory folder;
   const std::string out = folder.path() / "out";
   std::vector<std::string> words{SOFTGRAIN_PROGRAM, "reproduce", "all", "-o", out};
-  if (!softgrain::test::torture()) words.insert(words.end(), {"--seeds", "1", "--set", "sample.grains=20"});
+  if (!softgrain::test::torture())
+    words.insert(words.end(), {"--seeds", "1", "--set", "sample.grains=20", "--set", "bpm.primaries=60",
+                               "--set", "mpm.cells=4"});
   const auto result = softgrain::test::run(words);
   INFO(result.err);
   REQUIRE(result.exit_code == 0);

@@ -5,7 +5,7 @@ import numpy as np
 from .. import measure
 from . import causes
 from .curves import coordination_law, curvature, difference, onset, ratio
-from .geometry import coordination_of_inner
+from .geometry import coordination_of_inner, coordination_of_load, coordination_within
 from .plan import ATTRACTIONS, EARLY, FAST, FRICTIONS, HOOKE, MODELS, NODES, SLOW, START_PACKING_FRACTION, attraction_name
 from .single_grain import linear_strain, slope_ratio
 from .verdict import Changed, Spread, Verdict, judge
@@ -103,11 +103,29 @@ def _elastic_grain(results):
 def _stress(results):
     for model, friction in _kinds(results):
         yield _shape_of_stress(results, model, friction)
-    for model in _models(results):
-        value, found = _friction_on_stress(results, FAST, model)
-        slow, slow_agrees = _friction_on_stress(results, SLOW, model)
-        yield judge("2", f"{model.upper()}: friction has little effect on the stress", f"sigma/sigma0 with mu = 0.5 over mu = 0: {value}",
-                    found, [Changed(causes.SLOW_WALL, f"slow wall: {slow}", slow_agrees, results.command(SLOW, model))] if slow else [])
+    yield from (_friction(results, model) for model in _models(results))
+
+
+def _friction(results, model):
+    """sigma/sigma0 with friction over that without, as Fig. 2 shows it; sigma itself; the same with a slow wall."""
+    changed = []
+    plain = _friction_on_stress(results, FAST, model, scaled=False)
+    changed.append(Changed(causes.DEFINITION, f"sigma itself: {plain.text()}", _is_little(plain)))
+    slow = _friction_on_stress(results, SLOW, model)
+    if slow.count:
+        changed.append(Changed(causes.SLOW_WALL, f"slow wall: {slow.text()}", _is_little(slow), results.command(SLOW, model)))
+    scaled = _friction_on_stress(results, FAST, model)
+    return judge("2", f"{model.upper()}: friction has little effect on the stress",
+                 f"sigma/sigma0 with mu = 0.5 over mu = 0: {scaled.text()} (sigma: {plain.text()})", _is_little(scaled), changed)
+
+
+def _is_little(spread):
+    return abs(spread.mean - 1) < LITTLE
+
+
+def _friction_on_stress(results, way, model, scaled=True):
+    return Spread.of([ratio(rough, smooth, "stress", scaled=scaled)
+                      for rough, smooth in zip(results.curves(way, model, 0.5), results.curves(way, model))])
 
 
 def _shape_of_stress(results, model, friction):
@@ -125,16 +143,6 @@ def _shape_of_stress(results, model, friction):
         if other.count:
             changed.append(Changed(cause, f"{words}: {other.text()}", abs(other.mean) < LINEAR, results.command(way, model, friction)))
     return judge("2", statement, ours, abs(bend.mean) < LINEAR, changed)
-
-
-def _friction_on_stress(results, way, model):
-    """(text, whether it is little) of sigma/sigma0 with friction over that without, as Fig. 2 shows it."""
-    pairs = list(zip(results.curves(way, model, 0.5), results.curves(way, model)))
-    if not pairs:
-        return "", False
-    scaled = Spread.of([ratio(rough, smooth, "stress", scaled=True) for rough, smooth in pairs])
-    plain = Spread.of([ratio(rough, smooth, "stress") for rough, smooth in pairs])
-    return f"{scaled.text()} (sigma itself: {plain.text()})", abs(scaled.mean - 1) < LITTLE
 
 
 def _coordination(results):
@@ -163,11 +171,34 @@ def _packing_fraction(results):
 def _onset(results, way, model, friction):
     """(text, whether Z = 3 comes where the paper says) or None where there is no such run."""
     starts = [onset(c) for c in results.curves(way, model, friction)]
+    if way == NODES:
+        starts = [onset_of(run, coordination_of_load) for run in results.runs.get((way, model, friction), [])]
+    return _words_of_onset(starts)
+
+
+def _words_of_onset(starts):
     if not any(starts):
         return None
     eps, phi = Spread.of([s and s[0] for s in starts]), Spread.of([s and s[1] for s in starts])
     return (f"Z = 3 at eps = {eps.text(3)}, Phi_0 = {phi.text(3)}",
             abs(eps.mean - JAMMING_STRAIN) <= JAMMING_SPREAD + eps.deviation)
+
+
+def onset_of(run, coordination, z=3.0, last=0.16):
+    """(eps, Phi) where coordination(snapshot) first reaches `z` from one snapshot to the next, up to a strain of `last`; None
+    if it does not."""
+    times = run.times
+    strain, phi = (np.interp(times, run.series["time"], run.series[name]) for name in ("strain", "phi_0"))
+    below = None
+    for k in np.flatnonzero(strain <= last):
+        value = coordination(run[int(k)])
+        if value >= z and below is not None:
+            share = (z - below) / (value - below)
+            return tuple(float(values[k - 1] + share * (values[k] - values[k - 1])) for values in (strain, phi))
+        if value >= z:
+            return float(strain[k]), float(phi[k])
+        below = value
+    return None
 
 
 def _jamming(results, model, friction):
@@ -179,7 +210,17 @@ def _jamming(results, model, friction):
         found = _onset(results, way, model, friction)
         if found:
             changed.append(Changed(cause, f"{words}: {found[0]}", found[1], results.command(way, model, friction)))
+    if model == "bpm":
+        changed.append(_listed(results, friction))
     return judge("3", f"{model.upper()}, mu = {friction:g}: jams at eps = 0.08, Phi = 0.75, with Z = 3", ours, agrees, changed)
+
+
+def _listed(results, friction):
+    """Where pairs count whose outlines are nearer than the cut-off of the attraction, delta = a0, touching or not."""
+    runs = results.runs.get((FAST, "bpm", friction), [])
+    starts = [onset_of(run, lambda s: coordination_within(s, 2 * s.particles["radius"].mean())) for run in runs]
+    words, agrees = _words_of_onset(starts) or ("Z stays below 3", False)
+    return Changed(causes.DEFINITION, f"counted within the cut-off of the attraction: {words}", agrees)
 
 
 def _largest(results, model, friction):
