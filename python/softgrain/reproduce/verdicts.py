@@ -138,6 +138,7 @@ def _shape_of_stress(results, model, friction):
         return judge("2", statement, ours, bend.mean > LINEAR)
     changed = []
     for way, cause, words in ((NODES, causes.CONTACT_RULE, "points on the paper's lattice, contact on its nodes"),
+                              (EARLY, causes.CONTACT_RULE, "outlines that meet 1.1 cells early"),
                               (HOOKE, causes.LAW, "small-strain Hooke"), (SLOW, causes.SLOW_WALL, "slow wall")):
         other = Spread.of([curvature(c) for c in results.curves(way, model, friction)])
         if other.count:
@@ -211,8 +212,22 @@ def _jamming(results, model, friction):
         if found:
             changed.append(Changed(cause, f"{words}: {found[0]}", found[1], results.command(way, model, friction)))
     if model == "bpm":
-        changed.append(_listed(results, friction))
+        changed += [_through_centres(results, friction), _listed(results, friction)]
     return judge("3", f"{model.upper()}, mu = {friction:g}: jams at eps = 0.08, Phi = 0.75, with Z = 3", ours, agrees, changed)
+
+
+def _through_centres(results, friction):
+    """The same runs, R taken through the centres of the outermost primaries: they fill 0.82 of a grain, so that one has the
+    radius a = R (0.82/N)^(1/2), and Phi is smaller by (1 + a/R)^2. The strain counts from where that Phi is 0.7."""
+    starts = []
+    for curve, run in zip(results.curves(FAST, "bpm", friction), results.runs[FAST, "bpm", friction]):
+        phi, found = curve.phi / (1 + np.sqrt(0.82 / run.case["bpm"]["primaries"])) ** 2, onset(curve)
+        if found:
+            at = float(np.interp(found[0], curve.strain, phi))
+            starts.append((float(np.log(at / START_PACKING_FRACTION)), at))
+    words, agrees = _words_of_onset(starts) or ("Z stays below 3", False)
+    return Changed(causes.DEFINITION, f"with R through the centres of the outermost primaries, from where that Phi is 0.7: {words}",
+                   agrees, results.command(FAST, "bpm", friction))
 
 
 def _listed(results, friction):
@@ -257,8 +272,10 @@ def _exponent(results, way, model, friction, name="z"):
 def _power_law(results):
     for model, friction in _kinds(results):
         ours, agrees = _exponent(results, FAST, model, friction) or ("too few samples", False)
-        slow = _exponent(results, SLOW, model, friction)
-        changed = [Changed(causes.SLOW_WALL, f"slow wall: exponent {slow[0]}", slow[1], results.command(SLOW, model, friction))
-                   ] if slow else []
+        changed = []
+        for way, cause, words in ((EARLY, causes.CONTACT_RULE, "outlines that meet 1.1 cells early"), (SLOW, causes.SLOW_WALL, "slow wall")):
+            found = _exponent(results, way, model, friction)
+            if found:
+                changed.append(Changed(cause, f"{words}: exponent {found[0]}", found[1], results.command(way, model, friction)))
         yield judge("4", f"{model.upper()}, mu = {friction:g}: Z - Z0 ~ (Phi - Phi0)^0.5 from Phi0 = 0.8", f"exponent {ours}", agrees,
                     changed)
