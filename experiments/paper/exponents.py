@@ -33,13 +33,15 @@ def samples(path):
 
 
 def exponent(phi, z, centre, last):
-    """a of Z = Z_c + A (Phi - Phi_c)^a by least squares, Z_c and A free; None where the rows do not span the range."""
+    """a of Z = Z_c + A (Phi - Phi_c)^a by least squares, Z_c and A free; None where the rows do not span the range, or no
+    exponent between 0.05 and 2.5 is best."""
     rows = (phi >= centre) & (phi <= last)
     x, z = phi[rows] - centre, z[rows]
     if x.size < 6 or phi[0] > centre or phi[-1] < last - 0.02:
         return None
     exponents = np.arange(0.05, 2.5, 0.01)
-    return float(exponents[np.argmin([missed(x, z, a) for a in exponents])])
+    best = int(np.argmin([missed(x, z, a) for a in exponents]))
+    return float(exponents[best]) if 0 < best < len(exponents) - 1 else None
 
 
 def missed(x, z, a):
