@@ -76,18 +76,19 @@ def interval(values):
 
 
 def draw(rows, path):
-    figure, panels = plt.subplots(1, len(KINDS), figsize=(7.1, 2.6), layout="constrained", sharey=True)
+    figure, (*panels, legend) = plt.subplots(1, len(KINDS) + 1, figsize=(8.6, 2.6), layout="constrained", sharey=True)
     last = LASTS[0]
+    kinds = list(dict.fromkeys(row[:2] for row in rows))
     for axes, kind in zip(panels, KINDS):
-        kinds = sorted({(row[0], row[1]) for row in rows if row[2] == kind})
-        for name, friction in kinds:
+        for number, (name, friction) in enumerate(kinds):
             some = np.array([(row[3], row[6], row[7]) for row in rows if row[:3] == (name, friction, kind) and row[4] == last])
             if some.size:
-                axes.errorbar(*some.T, marker="o", ms=3, lw=0.8, capsize=2, label=rf"{name}, $\mu = {friction:g}$")
+                axes.errorbar(*some.T, color=f"C{number}", marker="o", ms=3, lw=0.8, capsize=2, label=rf"{name}, $\mu = {friction:g}$")
         axes.axhline(0.5, color="0.6", lw=0.6)
-        axes.set(xlabel=r"$\Phi_c$", title=kind.replace("_", " "), ylim=(0, 1.6))
+        axes.set(xlabel=r"$\Phi_c$", title=kind.replace("_", " "), ylim=(0, 1.7))
     panels[0].set_ylabel(f"exponent, fitted to $\\Phi$ = {last}")
-    panels[0].legend(frameon=False, fontsize=6)
+    legend.set_axis_off()
+    legend.legend(*panels[0].get_legend_handles_labels(), loc="upper left", frameon=False, fontsize=7)
     figure.savefig(path, dpi=150)
 
 
