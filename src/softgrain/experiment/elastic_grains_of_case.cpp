@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/solid_case.hpp"
@@ -18,9 +19,6 @@ namespace {
 
 /// Of an explicit step: the mesh's own vibrations are damped.
 constexpr double damping_share = 0.5;
-
-/// Of an implicit step: the walls come together by this share of the smallest radius, at most.
-constexpr double way_share = 0.01;
 
 AnyLaw law_of(const Case& c) { return make_law(c.mpm.law, c.mpm.material); }
 
@@ -141,13 +139,8 @@ PlacedModel lattice_grains_of(const Case& c) {
   return {std::make_unique<LatticeGrains>(std::move(dynamics)), std::move(box), dt};
 }
 
-/// Step of so much of the way of the walls.
-double longest_way(const Case& c, double smallest_radius) {
-  return way_share * smallest_radius / c.loading.wall_velocity;
-}
-
 PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double smallest_radius) {
-  const double dt = c.time.step > 0 ? c.time.step : longest_way(c, smallest_radius);
+  const double dt = c.time.step > 0 ? c.time.step : implicit_time_step(c, smallest_radius);
   const ImplicitOptions options{.tolerance = tolerance_of(c, grains, box.height()),
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
@@ -161,7 +154,7 @@ PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double
 PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box, double smallest_radius) {
   const double dt = c.time.step > 0             ? c.time.step
                     : grains.fastest_wave() > 0 ? stable_time_step(grains)
-                                                : longest_way(c, smallest_radius);
+                                                : implicit_time_step(c, smallest_radius);
   const ExplicitOptions options{.damping_share = damping_share,
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,

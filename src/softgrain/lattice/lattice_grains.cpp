@@ -100,15 +100,16 @@ std::vector<ContactPoint> LatticeGrains::contacts() const {
   return points;
 }
 
-std::pair<double, double> LatticeGrains::extent() const {
+std::pair<double, double> LatticeGrains::extent(int axis) const {
   double least = std::numeric_limits<double>::infinity(), largest = -least;
   for (const PointGrain& grain : dynamics_.grains)
-    for (const Vec<2>& x : grain.outline) least = std::min(least, x[0]), largest = std::max(largest, x[0]);
+    for (const Vec<2>& x : grain.outline)
+      least = std::min(least, x[axis]), largest = std::max(largest, x[axis]);
   return {least, largest};
 }
 
 std::pair<double, double> LatticeGrains::reach() const {
-  const auto [low, high] = extent();
+  const auto [low, high] = extent(0);
   const double margin = 0.1 * (high - low);
   return {low - margin, high + margin};
 }

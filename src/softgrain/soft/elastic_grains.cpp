@@ -73,17 +73,17 @@ std::vector<double> ElasticGrains<Dynamics>::radii() const {
 }
 
 template <class Dynamics>
-std::pair<double, double> ElasticGrains<Dynamics>::extent() const {
+std::pair<double, double> ElasticGrains<Dynamics>::extent(int axis) const {
   std::vector<Vec<Dim>> outline;
   dynamics_.grains.gather_outline(outline);
   double least = std::numeric_limits<double>::infinity(), largest = -least;
-  for (const Vec<Dim>& x : outline) least = std::min(least, x[0]), largest = std::max(largest, x[0]);
+  for (const Vec<Dim>& x : outline) least = std::min(least, x[axis]), largest = std::max(largest, x[axis]);
   return {least, largest};
 }
 
 template <class Dynamics>
 std::pair<double, double> ElasticGrains<Dynamics>::reach() const {
-  const auto [low, high] = extent();
+  const auto [low, high] = extent(0);
   const double margin = 0.1 * (high - low);
   return {low - margin, high + margin};
 }
