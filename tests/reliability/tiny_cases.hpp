@@ -125,6 +125,8 @@ inline std::vector<TinyCase> tiny_cases() {
   add_variant("updated-lagrangian", "diametral-mpm",
               {"mpm.formulation=\"updated_lagrangian\"", "time.step=0", "grain.radius=\"1 mm\"",
                "contact.friction=0", "contact.wall_friction=0"});
+  add_variant("updated-lagrangian-box", "compaction-mpm",
+              {"mpm.formulation=\"updated_lagrangian\"", "mpm.contact_on=\"grid_nodes\"", "time.step=0"});
   return cases;
 }
 
