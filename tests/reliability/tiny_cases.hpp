@@ -97,7 +97,7 @@ inline std::vector<TinyCase> tiny_cases() {
              name == "sphere_walls")
       cases.push_back({name, source, tiny_path(name)});
     else if (name == "biaxial" || name == "relaxation" || name == "shear" || name == "poured")
-      cases.push_back({name, source, tiny_path(name), name == "relaxation" ? 1U : 2U});
+      cases.push_back({name, source, tiny_path(name), name == "relaxation" || name == "poured" ? 1U : 2U});
     else
       cases.push_back({name, source, tiny_settings(name)});
     if (name == "soft_rigid") {
@@ -125,6 +125,8 @@ inline std::vector<TinyCase> tiny_cases() {
   add_variant("updated-lagrangian", "diametral-mpm",
               {"mpm.formulation=\"updated_lagrangian\"", "time.step=0", "grain.radius=\"1 mm\"",
                "contact.friction=0", "contact.wall_friction=0"});
+  add_variant("updated-lagrangian-box", "compaction-mpm",
+              {"mpm.formulation=\"updated_lagrangian\"", "mpm.contact_on=\"grid_nodes\"", "time.step=0"});
   return cases;
 }
 

@@ -138,6 +138,10 @@ bool remembers(const Case& c) {
 
 /// Of all grains that are not bonded.
 double points(const Case& c) {
+  if (is_updated_lagrangian(c) && is_in_a_box(c)) {  // on one lattice, the cell that of the smallest grain
+    const double R = smallest_radius(c);
+    return points_of_grain(c) * grain_area(c) / (std::numbers::pi * R * R);
+  }
   return sum_of_kinds(c, [](const Case& kind) { return grains(kind) * points_of_grain(kind); });
 }
 

@@ -198,10 +198,17 @@ std::string law_impossible(const Case& c) {
 std::string formulation_cannot(const Case& c) {
   const bool updated = c.mpm.formulation == Formulation::updated_lagrangian;
   if (!is_elastic(c)) return "";
-  if (updated && c.experiment.loading != LoadingPath::diametral)
+  if (updated && c.experiment.loading != LoadingPath::diametral &&
+      c.experiment.loading != LoadingPath::compaction)
     return fmt::format(
-        "mpm.formulation \"updated_lagrangian\" needs experiment.loading \"diametral\", not \"{}\"",
+        "mpm.formulation \"updated_lagrangian\" needs experiment.loading \"diametral\" or \"compaction\", "
+        "not "
+        "\"{}\"",
         word_of(c.experiment.loading));
+  if (updated && (c.box.x == BoxEnd::periodic || c.box.y == BoxEnd::periodic))
+    return "mpm.formulation \"updated_lagrangian\" needs walls: leave out box.x and box.y \"periodic\"";
+  if (updated && !c.kinds.empty())
+    return "mpm.formulation \"updated_lagrangian\" takes grains of one material: leave out [[kind]]";
   if (updated && law_impossible(c).empty() && law_choice(c.mpm.law).remembers())
     return fmt::format("mpm.formulation \"updated_lagrangian\" takes elastic laws only, not mpm.law \"{}\"",
                        word_of(c.mpm.law));

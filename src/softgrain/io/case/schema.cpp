@@ -92,7 +92,7 @@ std::vector<Key> all_keys() {
       KEY(mpm.integrator, "", its_words(), "backward Euler, or symplectic Euler with lumped masses; in space explicit, also where it is left out", total_lagrangian),
       KEY(mpm.formulation, "", its_words(),
           "total_lagrangian: on a grid that fits the grain; updated_lagrangian: points move through a lattice that is "
-          "reset in each step, always explicit, for comparison (diametral)", with_mpm),
+          "reset in each step, always explicit, for comparison (diametral, compaction)", with_mpm),
       KEY(mpm.shape_functions, "", its_words(), "of the lattice (updated_lagrangian)", updated_lagrangian),
       KEY(mpm.contact_on, "", its_words(),
           "where contact acts; total_lagrangian: on the outline only", updated_lagrangian),
