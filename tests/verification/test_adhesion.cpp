@@ -225,7 +225,7 @@ TEST_CASE(
   CHECK(hang(1.1 * holds / mass, 0, 0.3)[1] < -still);  // too heavy
   const double less = 0.6 * 0.3 * (holds / mass - g);
   CHECK(norm(hang(g, less, 0.3)) < 0.05 * less * time);  // it sways
-  const double aside = 2 * 0.3 * (holds / mass - g);  // half of it is held by mu (A - m g)
+  const double aside = 2 * 0.3 * (holds / mass - g);     // half of it is held by mu (A - m g)
   CHECK(hang(g, aside, 0.3)[0] == doctest::Approx(aside / 2 * time).epsilon(0.05));
 }
 

@@ -152,7 +152,7 @@ void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineSta
     const Vec<2>& x = state.position[v];
     for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
       const double height = dot(x - state.walls[w].point, state.walls[w].normal);
-      if (height > margin + segment_) continue;
+      if (state.walls[w].open || height > margin + segment_) continue;
       const int grain = grains.grain_of_vertex(v);
       const bool vertex_alone = vertices_only_ && vertices_only_(grains.kind(grain), -1);
       if (const OutlineArc* arc = vertex_alone ? nullptr : rigid_arc(grains, v)) {

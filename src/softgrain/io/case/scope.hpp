@@ -50,7 +50,9 @@ inline constexpr Scope adhering{"on outlines in the plane (total_lagrangian mpm,
 inline constexpr Scope adhering_pairs{"between outlines in a box in the plane (total_lagrangian mpm, rigid)",
                                       [](const Case& c) { return can_adhere(c) && with_pairs.covers(c); }};
 inline bool is_placed(const Case& c) { return is_in_a_box(c) && !c.sample.placed.empty(); }
-inline bool is_random(const Case& c) { return is_in_a_box(c) && c.sample.placed.empty(); }
+inline bool is_random(const Case& c) {
+  return is_in_a_box(c) && (c.sample.placed.empty() || c.sample.places == Places::pour);
+}
 inline bool has_sizes(const Case& c, SizeLaw law) { return is_random(c) && c.sample.sizes == law; }
 inline constexpr Scope with_chance{"on bpm or random grains in a box",
                                    [](const Case& c) { return is_bpm(c) || is_random(c); }};
@@ -71,6 +73,8 @@ inline bool turns(const Case& c) {
   return is_path(c, LoadingPath::diametral) || is_path(c, LoadingPath::compaction) ||
          is_path(c, LoadingPath::isotropic);
 }
+inline constexpr Scope with_stages{"in a box, along [[stage]]",
+                                   [](const Case& c) { return is_in_a_box(c) && !c.stages.empty(); }};
 inline constexpr Scope with_short_path{"on paths that are not stages",
                                        [](const Case& c) { return c.stages.empty(); }};
 inline constexpr Scope turning{"on diametral, compaction and isotropic paths", turns};
