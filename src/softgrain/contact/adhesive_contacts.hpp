@@ -90,7 +90,7 @@ SolverReport solve_adhesive(System& system, AdhesiveContacts& adhesion, PushedBo
                             std::span<Vec<Dim>> impulse, std::span<const double> friction,
                             const SolverOptions& options) {
   if (adhesion.contact.empty()) return solve_nlgs<Dim>(system, impulse, friction, options);
-  constexpr int most_passes = 50;
+  constexpr int most_passes = 15;
   SolverOptions inner = options;  // what sweeps at a given a leave is noise to the next a
   inner.tolerance *= 0.02;
   inner.max_sweeps *= 4;
