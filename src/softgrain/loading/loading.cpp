@@ -110,10 +110,9 @@ void LoadingOf<Dim>::drive(Box<Dim>& box, const ModelOf<Dim>& model, double time
   for (std::size_t d = 0; d < stage.drives.size(); ++d)
     if (stage.drives[d].control == Control::stress && moves_cell(stage.drives[d], box))
       speeds[d] = push_cell(stage.drives[d], box, model, time, dt);
-  if constexpr (Dim == 2)
-    if (box.cell.any()) move_cell(stage, speeds, box);
+  if (box.cell.any()) move_cell(stage, speeds, box);
   for (std::size_t d = 0; d < stage.drives.size(); ++d) {
-    const auto share = share_in<Dim>(stage.drives[d].part, frame_.aspect);
+    const auto share = frame_.template shares<Dim>(stage.drives[d].part);
     for (std::size_t w = 0; w < box.walls.size(); ++w)
       // from 0: a wall that rests has no negative zeros
       if (share[w] != 0) box.walls[w].velocity = Vec<Dim>{} + (share[w] * speeds[d]) * box.walls[w].normal;

@@ -37,8 +37,10 @@ class CaseReader {
       for (std::size_t i = 0; i < sets_.size(); ++i) read_set(static_cast<int>(i));
       settle_time_step();
       settle_dimension();
+      forms_.finish_stages();
       given_ = draft_.the_case;
       const PlacedLines lines = place_grains(forms_, draft_, sources_);
+      check_heights(draft_);
       forms_.finish_kinds();
       draft_.the_case = complete_sample(draft_.the_case);
       take_quasi_static_speeds();
