@@ -14,16 +14,16 @@
 namespace softgrain {
 namespace {
 
-/// The faces of a box in space, a row of four corners for each, in the order of BoxWall; of walls without
-/// sides as far as they are drawn.
+/// The faces of a box or a cell in space, a row of four corners for each, in the order of BoxWall; of walls
+/// without sides as far as they are drawn.
 void add_faces(const Box<3>& box, const std::pair<double, double>& reach, Scene& scene) {
   Vec<3> low, high;
   for (int k = 0; k < 3; ++k) {
-    low[k] = box.bounded(k) ? box.low(k).point[k] : reach.first;
-    high[k] = box.bounded(k) ? box.high(k).point[k] : reach.second;
+    low[k] = box.bounded(k) ? box.low(k).point[k] : box.repeats(k) ? 0 : reach.first;
+    high[k] = box.bounded(k) ? box.high(k).point[k] : box.repeats(k) ? box.length(k) : reach.second;
   }
   std::vector<double> corners;
-  for (std::size_t w = 0; w < box.walls.size(); ++w) {
+  for (std::size_t w = 0; w < box.faces(); ++w) {
     const int axis = 2 - static_cast<int>(w / 2), a = (axis + 1) % 3, b = (axis + 2) % 3;
     for (int corner = 0; corner < 4; ++corner) {
       Vec<3> x;

@@ -30,16 +30,12 @@ std::string not_yet_in_space(const Case& c) {
   if (c.experiment.loading == LoadingPath::biaxial)
     return not_yet("the path \"biaxial\", between two walls that rest",
                    "write \"triaxial\", where four side walls keep the stress, or tables [[stage]]");
-  const auto repeats = repeats_of(c);
-  if (repeats[0] || repeats[1] || repeats[2])
-    return not_yet("a periodic box", "write box.x, box.y and box.z = \"walls\"");
   if (c.output.report) return not_yet("the page of a run", "write output.report = false, or leave it out");
   for (int k = 0; k < kinds_of(c); ++k) {
     const Case kind = case_of_kind(c, k);
     if (is_rigid(kind)) return not_yet("rigid grains", "write model = \"mpm\"");
-    if (law_choice(kind.mpm.law).remembers())
-      return not_yet("a law of the material that flows, creeps or relaxes",
-                     "write mpm.law = \"neo_hookean\"");
+    if (law_choice(kind.mpm.law).flows() && kind.mpm.material.kinematic_modulus > 0)
+      return not_yet("mpm.kinematic_modulus", "leave it out, and let mpm.hardening_modulus harden alone");
   }
   if (c.mpm.cells > most_cells)
     return not_yet("more than 24 mpm.cells, 32 cells^3 points in a grain",

@@ -4,6 +4,7 @@
 #include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/solid_case.hpp"
+#include "softgrain/material/any_law.hpp"
 #include "softgrain/soft/elastic_grains.hpp"
 
 namespace softgrain {
@@ -19,10 +20,13 @@ constexpr double step_share = 0.6;
 /// 0.49, while at 0.45 it is nearer to the truth than the mean (docs/decisions/0050).
 constexpr double locking_poisson_ratio = 0.475;
 
+/// What flows does so at constant volume, and would lock too.
 GrainMaterial solid_material(const Case& kind) {
+  const LawChoice& choice = law_choice(kind.mpm.law);
+  const bool flows = choice.flows() || choice.takes(&MaterialParameters::creep_rate);
   return {.law = make_law(kind.mpm.law, kind.mpm.material),
           .density = kind.grain.density,
-          .mean_dilatation = kind.mpm.material.poisson_ratio >= locking_poisson_ratio};
+          .mean_dilatation = flows || kind.mpm.material.poisson_ratio >= locking_poisson_ratio};
 }
 
 SolidGrains solid_grains(const Case& c, std::vector<PlacementOf<3>> placed) {

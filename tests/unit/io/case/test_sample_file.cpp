@@ -89,7 +89,7 @@ TEST_CASE("a table with an error in every line stops after twenty, and one with 
   CHECK(refusal(large).starts_with("10002:1: not yet: more than 10000 grains"));
 }
 
-TEST_CASE("a file of spheres has z, and no angle; one of disks has none") {
+TEST_CASE("a file of spheres has z and no angle, one of disks has no z") {
   const std::vector<std::string> any{""};
   const SampleText spheres = read_sample_text("z [mm], x [mm], y [mm], radius [mm]\n3, 1, 2, 0.5\n", any, 3);
   CHECK(spheres.issues.empty());
