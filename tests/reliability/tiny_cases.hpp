@@ -43,9 +43,6 @@ inline Words tiny_path(const std::string& name) {
   if (name == "compaction_3d")
     add({"sample.grains=4", "mpm.cells=2", "sample.packing_fraction=0.35", "loading.wall_velocity=\"5 m/s\"",
          "loading.max_strain=0.32", "loading.unload_at=[0.28]", "loading.unload_by=0.05"});
-  if (name == "triaxial_3d")
-    add({"mpm.cells=2", "sample.packing_fraction=0.35", "loading.wall_velocity=\"5 m/s\"",
-         "loading.confining_stress=\"0.2 MPa\"", "loading.hold=\"0.1 ms\"", "loading.max_strain=0.5"});
   if (name == "sphere_walls")
     add({"mpm.cells=2", "contact.wall_friction=0.2", "loading.wall_velocity=\"5 m/s\"",
          "loading.max_strain=0.1", "loading.unload_at=[0.06]", "loading.unload_by=0.03"});
@@ -91,6 +88,8 @@ inline std::vector<TinyCase> tiny_cases() {
     const std::string name = entry.path().filename().string();
     const std::string source = (entry.path() / "case.toml").string();
     if (!fs::exists(source)) continue;
+    if (name == "triaxial_3d")
+      continue;  // a stress that is kept takes too long: unit/experiment/test_stages_in_space
     if (name == "jamming")
       cases.push_back({name, source, tiny_path(name), 0});
     else if (name == "die" || name == "tablet")
@@ -98,7 +97,7 @@ inline std::vector<TinyCase> tiny_cases() {
     else if (name == "rubber_sand" || name == "soft_rigid" || name == "compaction_3d" ||
              name == "sphere_walls")
       cases.push_back({name, source, tiny_path(name)});
-    else if (name == "biaxial" || name == "triaxial_3d" || name == "relaxation" || name == "shear")
+    else if (name == "biaxial" || name == "relaxation" || name == "shear")
       cases.push_back({name, source, tiny_path(name), name == "relaxation" ? 1U : 2U});
     else
       cases.push_back({name, source, tiny_settings(name)});

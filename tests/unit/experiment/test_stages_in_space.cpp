@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -79,8 +80,10 @@ TEST_CASE("walls in space keep three stresses, and the contacts inside bear the 
   SimulationOf<3> simulation = test::solid_simulation_of(complete_sample(c));
   Vec<3> stress;
   int steps = 0;
+  SimulationOf<3> resumed = test::solid_simulation_of(complete_sample(c));
   while (!simulation.finished()) {
     simulation.step();
+    if (simulation.steps_done() == 1000) resumed.restore(simulation.checkpoint());
     if (simulation.time() < 1.4e-3) continue;
     ++steps;
     const Box<3>& box = simulation.box();
@@ -98,6 +101,11 @@ TEST_CASE("walls in space keep three stresses, and the contacts inside bear the 
     CHECK(end.packing->stress(axis, axis) == doctest::Approx(target[axis]).epsilon(0.02));
   }
   CHECK(simulation.outcome().completed);
+  while (!resumed.finished()) resumed.step();
+  const Arrays there = resumed.checkpoint().arrays, here = simulation.checkpoint().arrays;
+  CHECK(std::equal(there.begin(), there.end(), here.begin(), here.end(), [](const auto& a, const auto& b) {
+    return a.first == b.first && a.second.values == b.second.values;
+  }));
   CHECK(std::abs(end.energies.error) < 1e-9 * end.energies.wall_work);
 }
 
