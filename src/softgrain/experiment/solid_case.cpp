@@ -30,6 +30,9 @@ std::string not_yet_in_space(const Case& c) {
   if (c.experiment.loading == LoadingPath::biaxial)
     return not_yet("the path \"biaxial\", between two walls that rest",
                    "write \"triaxial\", where four side walls keep the stress, or tables [[stage]]");
+  if (c.sample.places == Places::pour)
+    return not_yet("sample.places \"pour\"", "leave it out: places are random");
+  if (c.box.open_top) return not_yet("box.open_top", "leave it out: six walls hold the spheres");
   if (c.output.report) return not_yet("the page of a run", "write output.report = false, or leave it out");
   for (int k = 0; k < kinds_of(c); ++k) {
     const Case kind = case_of_kind(c, k);

@@ -19,9 +19,6 @@ Drive keeps(Part part, double stress) { return {.part = part, .control = Control
 
 Stage rest(double time) { return {.name = "rest", .until = {.time = time}}; }
 
-/// Of top and bottom wall: side walls of a biaxial path, which make room for a box that flattens.
-constexpr double side_speed = 5;
-
 /// What presses along y: the top wall, or the cell.
 Part pressing(const Case& c) { return repeats_in_height(c) ? Part::yy : Part::top; }
 
@@ -101,7 +98,6 @@ std::vector<Stage> confined(const Case& c) {
 std::vector<Stage> biaxial(const Case& c) {
   const double v = c.loading.wall_velocity, confining = c.loading.confining_stress;
   Stage compress{.name = "compress", .drives = all_keep(c, confining), .key = "loading.confining_stress"};
-  for (Drive& drive : compress.drives) drive.speed = side_speed * v;
   compress.drives.front() = at_velocity(Part::yy, v);
   compress.until.strain[0] = c.loading.max_strain;
   if (c.loading.max_stress > 0)
@@ -250,6 +246,17 @@ double least_kept_stress(const Case& c) {
     for (const Drive& drive : stage.drives)
       if (drive.control == Control::stress) least = least == 0 ? drive.value : std::min(least, drive.value);
   return least;
+}
+
+double stress_beside_motion(const Case& c) {
+  double largest = 0;
+  for (const Stage& stage : stages_of(c)) {
+    const auto is_given = [](const Drive& drive) { return drive.is_given() && drive.value != 0; };
+    if (std::none_of(stage.drives.begin(), stage.drives.end(), is_given)) continue;
+    for (const Drive& drive : stage.drives)
+      if (drive.control == Control::stress) largest = std::max(largest, drive.value);
+  }
+  return largest;
 }
 
 double largest_named_stress(const Case& c) {
