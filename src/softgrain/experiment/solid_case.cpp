@@ -46,4 +46,11 @@ std::string not_yet_in_space(const Case& c) {
   return "";
 }
 
+void set_defaults_of_space(Case& c, const std::function<bool(const char* key)>& is_given) {
+  if (!is_in_space(c)) return;
+  if (!is_given("mpm.integrator")) c.mpm.integrator = Integrator::symplectic_euler;
+  if (!is_given("mpm.cells")) c.mpm.cells = 6;
+  if (!is_given("output.report")) c.output.report = false;
+}
+
 }  // namespace softgrain

@@ -107,9 +107,8 @@ void visit_history(GrainsOf<Dim>& grains, StateVisitor& visit) {
       for (int lane = 0; lane < Wide::size; ++lane) values.push_back(number[lane]);
   visit.rows(
       {"history", "", Owner::point, Role::state,
-       "of each point of eight grains C_p^-1 (11, 22, 12) and the plastic strain; of what relaxes U of "
-       "C = U^T U and C_v^-1 of four branches (11, 22, 12 each); in space F_p^-1, or F and F_v^-1, row by "
-       "row"},
+       "of each point of eight grains C_p^-1 (11, 22, 12) and the plastic strain; of what relaxes U and "
+       "C_v^-1 of four branches (11, 22, 12 each); in space F_p^-1, or F and F_v^-1"},
       values, Wide::size);
   const double* value = values.data();
   for (BatchOf<Dim>& batch : grains.batches)

@@ -171,12 +171,10 @@ std::string box_unfit(const Case& c) {
     return "box.y \"periodic\" with walls in x: turn the box, so that box.x is \"periodic\"";
   if (repeats[2] && !repeats[1])
     return "box.z \"periodic\" with walls in y: turn the box, so that box.x and box.y are \"periodic\"";
-  const bool weightless = gravity_of<3>(c) == Vec<3>{} || (!is_in_space(c) && gravity_of(c) == Vec<2>{});
+  const bool weightless = is_in_space(c) ? gravity_of<3>(c) == Vec<3>{} : gravity_of(c) == Vec<2>{};
   if (repeats_in_height(c) && !weightless)
-    return is_in_space(c)
-               ? "gravity lets a cell that is periodic along all axes fall for ever: it needs walls in z"
-               : "gravity lets a cell that is periodic along both axes fall for ever: box.gravity_x and "
-                 "gravity_y need walls in y";
+    return "gravity lets a cell that is periodic along all axes fall for ever: box.gravity_x and gravity_y "
+           "need walls in y, in space in z";
   if (c.box.gravity_z != 0 && !is_in_space(c))
     return "box.gravity_z belongs to experiment.dimension = 3: in the plane box.gravity_y pulls down";
   if (scope::is_path(c, LoadingPath::triaxial) && !is_in_space(c))
