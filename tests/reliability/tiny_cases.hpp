@@ -97,7 +97,7 @@ inline std::vector<TinyCase> tiny_cases() {
              name == "sphere_walls")
       cases.push_back({name, source, tiny_path(name)});
     else if (name == "biaxial" || name == "relaxation" || name == "shear" || name == "poured")
-      cases.push_back({name, source, tiny_path(name), name == "relaxation" ? 1U : 2U});
+      cases.push_back({name, source, tiny_path(name), name == "relaxation" || name == "poured" ? 1U : 2U});
     else
       cases.push_back({name, source, tiny_settings(name)});
     if (name == "soft_rigid") {
