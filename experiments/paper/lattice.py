@@ -44,17 +44,17 @@ def row(run):
 
 
 def draw(rows, path):
-    figure, axes = plt.subplots(figsize=(3.4, 2.6), layout="constrained")
+    """Runs as circles; their means, those on nodes from where they meet those on outlines when a cell is nothing."""
+    figure, axes = plt.subplots(figsize=(3.6, 2.8), layout="constrained")
+    outline = np.mean([r[4] for r in rows if r[0] == "outline"])
     for contact_on, colour in COLOURS.items():
-        some = np.array([(r[1], r[4]) for r in rows if r[0] == contact_on])
-        if not some.size:
-            continue
-        axes.plot(*some.T, "o", color=colour, ms=4, mfc="none")
-        slope, start = np.polyfit(*some.T, 1)
-        cells = np.array([0, some[:, 0].max()])
-        axes.plot(cells, start + slope * cells, color=colour, lw=0.8, label=f"contact on {contact_on.replace('_', ' ')}")
+        some = [(r[1], r[4]) for r in rows if r[0] == contact_on and np.isfinite(r[4])]
+        axes.plot(*zip(*some), "o", color=colour, ms=4, mfc="none")
+        cells = sorted({cell for cell, _ in some})
+        means = [np.mean([strain for cell, strain in some if cell == one]) for one in cells]
+        axes.plot([0, *cells], [outline, *means], color=colour, lw=0.8, label=f"contact on {contact_on.replace('_', ' ')}")
     axes.plot(0.058, 0.08, "s", color="#cc79a7", label="the paper")
-    axes.set(xlabel="cell / mean $R$", ylabel=r"strain $\varepsilon$ from which the bottom bears", xlim=(0, None), ylim=(0, 0.13))
+    axes.set(xlabel="cell / mean $R$", ylabel="strain from which\nthe bottom wall bears", xlim=(0, None), ylim=(0, 0.13))
     axes.legend(frameon=False, fontsize=7, loc="lower left")
     figure.savefig(path, dpi=150)
 
