@@ -1,66 +1,21 @@
 #include "softgrain/rigid/narrow_sweeps.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
+
+#include "softgrain/rigid/narrow_rows.hpp"
 
 namespace softgrain {
 namespace {
 
-using Floats = Narrow::Floats;
 using Integers = int __attribute__((vector_size(32)));
-using Pairs = double __attribute__((vector_size(32)));  // of floats, moved as one
 
-struct FloatColumns {
-  Floats x, y;
-};
-
-struct WideColumns {
-  Wide x, y;
-};
-WideColumns load_wide_columns(const Vec<2>* rows) {
-  const LaneColumns low = load_columns(rows), high = load_columns(rows + lane_count);
-  return {{low.x, high.x}, {low.y, high.y}};
-}
-
-template <class Row>
-double pair_at(const Row& row) {
-  double pair;
-  static_assert(sizeof row == sizeof pair);
-  std::memcpy(&pair, &row, sizeof pair);
-  return pair;
-}
-
-/// Rows index[0..7], as columns.
-template <class Row>
-FloatColumns gather_columns(const Row* rows, const int* index) {
-  const auto four = [&](int k, int l, int m, int n) {
-    return reinterpret_cast<Floats>(Pairs{pair_at(rows[index[k]]), pair_at(rows[index[l]]),
-                                          pair_at(rows[index[m]]), pair_at(rows[index[n]])});
-  };
-  const Floats rows0145 = four(0, 1, 4, 5), rows2367 = four(2, 3, 6, 7);
-  return {__builtin_shufflevector(rows0145, rows2367, 0, 2, 8, 10, 4, 6, 12, 14),
-          __builtin_shufflevector(rows0145, rows2367, 1, 3, 9, 11, 5, 7, 13, 15)};
-}
-
-/// The inverse of gather_columns: all indices must differ, or hold the same row.
-template <class Row>
-void scatter_columns(const FloatColumns& columns, Row* rows, const int* index) {
-  const auto store = [&](int lane, double pair) { std::memcpy(&rows[index[lane]], &pair, sizeof pair); };
-  const auto rows0145 =
-      reinterpret_cast<Pairs>(__builtin_shufflevector(columns.x, columns.y, 0, 8, 1, 9, 4, 12, 5, 13));
-  const auto rows2367 =
-      reinterpret_cast<Pairs>(__builtin_shufflevector(columns.x, columns.y, 2, 10, 3, 11, 6, 14, 7, 15));
-  store(0, rows0145[0]), store(1, rows0145[1]), store(2, rows2367[0]), store(3, rows2367[1]);
-  store(4, rows0145[2]), store(5, rows0145[3]), store(6, rows2367[2]), store(7, rows2367[3]);
-}
-
-Floats gather(const float* numbers, const int* index) {
-  Floats lanes;
-  for (int lane = 0; lane < Wide::size; ++lane) lanes[lane] = numbers[index[lane]];
-  return lanes;
-}
-void scatter(Floats lanes, float* numbers, const int* index) {
-  for (int lane = 0; lane < Wide::size; ++lane) numbers[index[lane]] = lanes[lane];
+/// p <- p + b (p - p'), and p' becomes the p of now. Returns the change.
+[[gnu::always_inline]] inline Narrow::Floats go_ahead(Narrow::Floats& p, Narrow::Floats& before, float b) {
+  const Narrow::Floats last = p;
+  p += b * (p - before);
+  before = last;
+  return p - last;
 }
 
 }  // namespace
@@ -83,46 +38,16 @@ struct NarrowSweeps::Bodies {
   FloatColumns a, b;
 };
 
-NarrowSweeps::System::System(NarrowSweeps& sweeps, const RigidParticles<2>& particles,
-                             const RigidContacts<2>& contacts, std::span<const double> offset)
-    : sweeps_(sweeps), contacts_(contacts), offset_(offset), inertia_ratio_(particles.inertia_ratio) {}
-
-Mat<2> NarrowSweeps::System::delassus_block(int contact) const {
-  const double W_nn = contacts_.inverse_mass_a[contact] + contacts_.inverse_mass_b[contact];
-  return Mat<2>::diagonal({W_nn, (1 + inertia_ratio_) * W_nn});
-}
-
-Vec<2> NarrowSweeps::System::relative_velocity(int contact) const {
-  const int a = contacts_.body_a[contact], b = contacts_.body_b[contact];
-  const Velocity &v_a = sweeps_.velocity_[a], &v_b = sweeps_.velocity_[b];
-  const Vec<2> along = Vec<2>{static_cast<double>(v_b.x) - v_a.x, static_cast<double>(v_b.y) - v_a.y} +
-                       contacts_.image_velocity(contact);
-  const Vec<2>& n = contacts_.normal[contact];
-  return {dot(n, along) + offset_[contact],
-          dot(perpendicular(n), along) - (static_cast<double>(sweeps_.spin_[a]) + sweeps_.spin_[b])};
-}
-
-void NarrowSweeps::System::apply_impulse(int contact, const Vec<2>& dp) {
-  const Vec<2>& n = contacts_.normal[contact];
-  const Vec<2> P = dp[0] * n + dp[1] * perpendicular(n);
-  const auto give = [&](int body, double inverse_mass, double sign) {
-    Velocity& v = sweeps_.velocity_[body];
-    v.x += static_cast<float>(sign * inverse_mass * P[0]);
-    v.y += static_cast<float>(sign * inverse_mass * P[1]);
-    sweeps_.spin_[body] -= static_cast<float>(inertia_ratio_ * inverse_mass * dp[1]);
-  };
-  give(contacts_.body_a[contact], contacts_.inverse_mass_a[contact], -1);
-  give(contacts_.body_b[contact], contacts_.inverse_mass_b[contact], 1);
-}
-
 void NarrowSweeps::turn(const Eight& c, Floats s_a, Floats s_b, Floats p_t) {
   scatter(s_a - inertia_ratio_ * c.inverse_a * p_t, spin_.data(), c.a);
   scatter(s_b - inertia_ratio_ * c.inverse_b * p_t, spin_.data(), c.b);
 }
 
-/// Per contact: reads 36 B of contact and 16 B of velocities, writes 4 B and 16 B.
-template <bool Measured>
-void NarrowSweeps::relax(Eight& c, LaneViolation<Floats>& violation) {
+/// Starts from y = p + b (p - p'), p' the impulse before. Per contact: reads 40 B of contact and 16 B of
+/// velocities, writes 8 B and 16 B.
+template <bool Ahead, bool Measured>
+void NarrowSweeps::relax(Eight& c, float b, LaneViolation<Floats>& violation) {
+  if constexpr (Ahead) go_ahead(c.p_n, c.p_n_before, b);
   Bodies bodies(velocity_.data(), c);
   // u_n = n . (v_b - v_a) + q_n
   const Floats u_n = c.n_x * (bodies.b.x - bodies.a.x) + c.n_y * (bodies.b.y - bodies.a.y) + c.offset;
@@ -133,8 +58,9 @@ void NarrowSweeps::relax(Eight& c, LaneViolation<Floats>& violation) {
   if constexpr (Measured) violation.add(Vec<1, Floats>{dp * (c.inverse_a + c.inverse_b)}, p_n);
 }
 
-template <bool Measured>
-void NarrowSweeps::relax(FrictionalEight& c, LaneViolation<Floats>& violation) {
+template <bool Ahead, bool Measured>
+void NarrowSweeps::relax(FrictionalEight& c, float b, LaneViolation<Floats>& violation) {
+  if constexpr (Ahead) go_ahead(c.p_n, c.p_n_before, b), go_ahead(c.p_t, c.p_t_before, b);
   Bodies bodies(velocity_.data(), c);
   const float kappa = inertia_ratio_;
   const Floats s_a = gather(spin_.data(), c.a), s_b = gather(spin_.data(), c.b);
@@ -155,23 +81,81 @@ void NarrowSweeps::relax(FrictionalEight& c, LaneViolation<Floats>& violation) {
   }
 }
 
-template <bool Measured>
-Violation NarrowSweeps::sweep_block(Block& block) {
+template <bool Ahead, bool Measured>
+Violation NarrowSweeps::sweep_contacts(Block& block, float b) {
   LaneViolation<Floats> violation;
-  for (Eight& contact : block.frictionless.eights) relax<Measured>(contact, violation);
-  for (FrictionalEight& contact : block.frictional.eights) relax<Measured>(contact, violation);
+  for (Eight& contact : block.frictionless.eights) relax<Ahead, Measured>(contact, b, violation);
+  for (FrictionalEight& contact : block.frictional.eights) relax<Ahead, Measured>(contact, b, violation);
   return Measured ? violation.total(relaxation_) : Violation{};
+}
+
+/// The velocities that the block's own contacts have changed in its last turn, by gain_ = H (p_k - p_k-1) in
+/// units of M, go ahead with its impulses.
+Violation NarrowSweeps::sweep_block(int k, double ahead, bool measured) {
+  Block& block = blocks_[listed_[k]];
+  const auto b = static_cast<float>(ahead);
+  const auto begin = [b](auto& now, auto& start, const auto& end) {
+    const auto last = now;
+    if (b > 0) now += b * (end - start);
+    start = last;
+  };
+  const bool turns = !block.frictional.eights.empty();
+  block.turn = sweeps_;
+  for (int i = block.bodies.begin; i < block.bodies.end; ++i) {
+    begin(velocity_[i].x, start_[i].x, end_[i].x), begin(velocity_[i].y, start_[i].y, end_[i].y);
+    if (turns) begin(spin_[i], spin_start_[i], spin_end_[i]);
+  }
+  const Violation violation =
+      measured ? sweep_contacts<true, true>(block, b) : sweep_contacts<true, false>(block, b);
+  std::copy_n(&velocity_[block.bodies.begin], block.bodies.end - block.bodies.begin,
+              &end_[block.bodies.begin]);
+  if (turns)
+    std::copy_n(&spin_[block.bodies.begin], block.bodies.end - block.bodies.begin,
+                &spin_end_[block.bodies.begin]);
+  return violation;
+}
+
+void NarrowSweeps::go_ahead_between(double ahead) {
+  if (listed_.empty()) return;
+  const auto b = static_cast<float>(ahead);
+  Block& between = blocks_[listed_.back()];
+  for (Eight& c : between.frictionless.eights) {
+    const Floats dp = go_ahead(c.p_n, c.p_n_before, b);
+    if (b > 0) Bodies(velocity_.data(), c).apply(dp * c.n_x, dp * c.n_y);
+  }
+  for (FrictionalEight& c : between.frictional.eights) {
+    const Floats dp_n = go_ahead(c.p_n, c.p_n_before, b), dp_t = go_ahead(c.p_t, c.p_t_before, b);
+    if (b <= 0) continue;
+    Bodies(velocity_.data(), c).apply(dp_n * c.n_x - dp_t * c.n_y, dp_n * c.n_y + dp_t * c.n_x);
+    turn(c, gather(spin_.data(), c.a), gather(spin_.data(), c.b), dp_t);
+  }
+}
+
+Violation NarrowSweeps::sweep_between(bool measured) {
+  if (listed_.empty()) return {};
+  Block& between = blocks_[listed_.back()];
+  return measured ? sweep_contacts<false, true>(between, 0) : sweep_contacts<false, false>(between, 0);
+}
+
+void NarrowSweeps::end_sweep() {
+  for (const int list : listed_) blocks_[list].moved = 0;
+  for (Touched& touched : touched_) {
+    Block& block = blocks_[touched.list];
+    const Velocity& v = velocity_[touched.body];
+    if (block.turn == sweeps_) touched.velocity = v, touched.spin = spin_[touched.body];
+    const float turned = block.frictional.eights.empty() ? 0 : std::abs(spin_[touched.body] - touched.spin);
+    const float gone = std::hypot(v.x - touched.velocity.x, v.y - touched.velocity.y);
+    block.moved = std::max(block.moved, 2 * (gone + turned));
+  }
+  ++sweeps_;
 }
 
 Violation NarrowSweeps::sweep(bool measured) {
   std::vector<Violation> found(listed_.size());
-  for_each_block(static_cast<int>(listed_.size()), [&](int k) {
-    Block& block = blocks_[listed_[k]];
-    found[k] = measured ? sweep_block<true>(block) : sweep_block<false>(block);
-  });
+  parallel_for(blocks(), [&](int k) { found[k] = sweep_block(k, 0, measured); });
   Violation violation;
   for (const Violation& of_block : found) violation += of_block;
-  return violation;
+  return violation += sweep_between(measured);
 }
 
 /// Each Eight takes the contacts that follow until one shares a particle with those before.
@@ -220,8 +204,9 @@ void NarrowSweeps::load(const RigidContacts<2>& contacts, std::span<const double
       const auto mine = Integers{0, 1, 2, 3, 4, 5, 6, 7} < count;
       next.n_x = Narrow(n.x).lanes, next.n_y = Narrow(n.y).lanes;
       next.offset = Narrow(load_wide(&offset[c])).lanes;
-      next.p_n = mine ? Narrow(p.x).lanes : Floats{};
-      if constexpr (std::is_same_v<AnyEight, FrictionalEight>) next.p_t = mine ? Narrow(p.y).lanes : Floats{};
+      next.p_n = next.p_n_before = mine ? Narrow(p.x).lanes : Floats{};
+      if constexpr (std::is_same_v<AnyEight, FrictionalEight>)
+        next.p_t = next.p_t_before = mine ? Narrow(p.y).lanes : Floats{};
     } else {
       for (int lane = 0; lane < count; ++lane) {
         next.n_x[lane] = static_cast<float>(contacts.normal[c + lane][0]);
@@ -231,6 +216,8 @@ void NarrowSweeps::load(const RigidContacts<2>& contacts, std::span<const double
         if constexpr (std::is_same_v<AnyEight, FrictionalEight>)
           next.p_t[lane] = static_cast<float>(contacts.impulse[c + lane][1]);
       }
+      next.p_n_before = next.p_n;
+      if constexpr (std::is_same_v<AnyEight, FrictionalEight>) next.p_t_before = next.p_t;
     }
     Bodies bodies(velocity_.data(), next);
     if constexpr (std::is_same_v<AnyEight, FrictionalEight>) {
@@ -253,6 +240,10 @@ void NarrowSweeps::take_bodies(const RigidParticles<2>& particles, const RigidCo
   for (const ContactBlock& block : contacts.blocks) listed_.push_back(block.list);
   velocity_.resize(bodies_ + blocks_.size());
   spin_.resize(bodies_ + blocks_.size());
+  start_.resize(bodies_), end_.resize(bodies_);
+  spin_start_.resize(bodies_), spin_end_.resize(bodies_);
+  list_of_.resize(bodies_, -1);
+  sweeps_ = 0;
   parallel_ranges(bodies_, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const Vec<2>& v = particles.velocity[i];
@@ -270,11 +261,38 @@ void NarrowSweeps::take_contacts(const RigidContacts<2>& contacts, const Contact
     fill(contacts, listed.frictionless, begin, idle, block.frictionless);
     fill(contacts, listed.frictional, begin, idle, block.frictional);
     block.made = listed.made;
+    const bool inside = listed.list != listed_.back();
+    if (inside)
+      take_range(contacts, listed, block);
+    else
+      take_touched(contacts, listed);
   }
   velocity_[idle] = {};
   spin_[idle] = 0;
   load(contacts, offset, listed, block.frictionless);
   load(contacts, offset, listed, block.frictional);
+}
+
+/// Of the bodies of a grain.
+void NarrowSweeps::take_range(const RigidContacts<2>& contacts, const ContactBlock& listed, Block& block) {
+  block.bodies = {bodies_, 0};
+  for (int c = listed.begin(); c < listed.end(); ++c) {
+    block.bodies.begin = std::min(block.bodies.begin, contacts.body_a[c]);
+    block.bodies.end = std::max(block.bodies.end, contacts.body_b[c] + 1);
+  }
+  for (int i = block.bodies.begin; i < block.bodies.end; ++i) list_of_[i] = listed.list;
+}
+
+/// Bodies of grains that have contacts between grains; after all blocks inside them.
+void NarrowSweeps::take_touched(const RigidContacts<2>& contacts, const ContactBlock& between) {
+  std::vector<int> bodies;
+  for (int c = between.begin(); c < between.end(); ++c)
+    bodies.push_back(contacts.body_a[c]), bodies.push_back(contacts.body_b[c]);
+  std::sort(bodies.begin(), bodies.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  touched_.clear();
+  for (const int body : bodies)
+    if (list_of_[body] >= 0) touched_.push_back({.body = body, .list = list_of_[body]});
 }
 
 void NarrowSweeps::read_impulses(const ContactBlock& listed, std::span<Vec<2>> impulse) const {
