@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that softgrain needs; the only place that names them. Does nothing when all are there.
-#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, fit, movie, bench, peers, wheel, viewer, torture, cluster, shells, paraview, clang, wasm
+#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, fit, movie, bench, peers, wheel, viewer, torture, cluster, shells, paraview, vtk, clang, wasm
 #   tools/install_dependencies.sh --list                 the table below
 # Why each was chosen: docs/decisions/0002-dependencies.md
 set -euo pipefail
@@ -70,6 +70,7 @@ paraview   paraview                draws the scene of softgrain paraview, 0.7 GB
 paraview   python3-paraview        pvbatch
 paraview   xvfb                    its window
 paraview   xauth                   its window
+vtk        python3-vtk9            reads our VTKHDF; not beside python3-paraview
 clang      clang                   the second compiler (preset clang)
 TABLE
 }
@@ -78,7 +79,7 @@ groups="build libraries python tests pictures"
 while (($#)); do
   case "$1" in
     --list) table && exit 0 ;;
-    --with) groups+=" ${2:?--with needs a group: checks, docs, fit, movie, bench, peers, wheel, viewer, torture, cluster, shells, paraview, clang or wasm}" && shift 2 ;;
+    --with) groups+=" ${2:?--with needs a group: checks, docs, fit, movie, bench, peers, wheel, viewer, torture, cluster, shells, paraview, vtk, clang or wasm}" && shift 2 ;;
     *) sed -n '2,4s/^# //p' "$0" >&2 && exit 2 ;;
   esac
 done

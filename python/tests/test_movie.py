@@ -105,6 +105,22 @@ class Files(unittest.TestCase):
         self.addCleanup(temporary.cleanup)
         self.folder = Path(temporary.name)
 
+    def test_a_webp_has_every_frame_rests_at_the_last_and_says_where_it_comes_from(self):
+        run = small_run("bonded")
+        code, path, _ = movie(run.path, "-o", self.folder / "squeeze.webp", "--fps=10", "--width=200")
+        self.assertEqual(code, 0)
+        film = film_of(run, 600)  # which then is made smaller
+        with Image.open(path) as image:
+            self.assertEqual((image.n_frames, image.size), (len(run), (200, 112)))
+            self.assertIn("softgrain ", image.getexif()[encode.IMAGE_DESCRIPTION])
+            for k in (0, len(run) - 1):
+                image.seek(k)
+                image.load()
+                self.assertEqual(image.info["duration"], 100 if k == 0 else encode.LAST)
+                expected = np.asarray(Image.fromarray(film[k]).resize(image.size, Image.BOX), int)
+                off = abs(np.asarray(image.convert("RGB")) - expected)
+                self.assertLess(off.mean(), 5)  # of 255
+
     def test_a_gif_has_every_frame_in_the_colours_of_the_key_and_says_where_it_comes_from(self):
         run = small_run("bonded")
         code, path, _ = movie(run.path, "-o", self.folder / "squeeze.gif", "--fps=10", "--width=400")
@@ -163,7 +179,7 @@ class Files(unittest.TestCase):
     def test_mistakes_end_with_2_and_the_remedy(self):
         code, _, err = movie(small_run("elastic").path, "-o", self.folder / "talk.avi")
         self.assertEqual(code, 2)
-        self.assertIn(".mp4 or .gif", err)
+        self.assertIn(".mp4, .gif or .webp", err)
         code, _, err = movie(synthetic.write_run(self.folder / "empty", snapshots=0), "-o", self.folder / "talk.gif")
         self.assertEqual(code, 2)
         self.assertIn("no snapshots", err)

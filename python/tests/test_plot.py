@@ -12,6 +12,7 @@ import warnings
 from itertools import combinations
 from pathlib import Path
 
+import h5py
 import matplotlib.axis
 import matplotlib.text
 import numpy as np
@@ -120,6 +121,25 @@ class Program(Temporary):
             self.assertIn(f"No module named {package}", result.stderr)
             self.assertIn("apt install python3-matplotlib python3-h5py", result.stderr)
             self.assertNotIn("Traceback", result.stderr)
+
+
+class Mixtures(Temporary):
+    def test_the_key_of_a_mixture_names_its_kinds_as_the_case_does(self):
+        run = self.write()
+        for path in softgrain.open(run).snapshots:
+            with h5py.File(path, "r+") as file:
+                count = len(file["scene/particles/position"])
+                file["scene/particles/grain"] = np.arange(count) // (count // 2 + 1)
+                file["scene/particles/kind"] = file["scene/particles/grain"][()]
+                square = np.array([(0, 0), (1e-3, 0), (1e-3, 1e-3), (0, 1e-3)])
+                file["scene/outlines/position"] = np.concatenate([square, square + 1e-3])
+                file["scene/outlines/grain"] = [0] * 4 + [1] * 4
+        for case, names in (('\n[[kind]]\nname = "rubber"\n[[kind]]\nname = "sand"\n', ["rubber", "sand"]),
+                            ("", ["kind 1", "kind 2"])):
+            (run / "case.toml").write_text("[bpm]\nattraction = 100\n" + case)
+            figure = plot.draw_grain(softgrain.open(run))
+            keys = [text.get_text() for axes in figure.axes if axes.get_legend() for text in axes.get_legend().get_texts()]
+            self.assertEqual([key for key in keys if not key.endswith(" N/m")], names)
 
 
 class Files(Temporary):

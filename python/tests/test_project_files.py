@@ -51,6 +51,21 @@ class Files(unittest.TestCase):
         self.assertLess(max(sizes.values()), gallery["LARGEST"])
         self.assertLess(sum(sizes.values()), gallery["LARGEST_ALL"])
 
+    def test_the_readme_begins_with_a_small_moving_picture_and_the_commands_that_make_it(self):
+        gallery = runpy.run_path(str(ROOT / "tools/gallery"))
+        picture = gallery["FRONT_PICTURE"]
+        beginning = re.sub(r"\\\n *", "", text("README.md").partition("## ")[0])
+        self.assertIn(f"]({picture.relative_to(ROOT)})", beginning)
+        for command in gallery["FRONT"]:
+            self.assertIn(f"softgrain {command}\n", beginning)
+        self.assertLess(picture.stat().st_size, gallery["LARGEST_ALL"])
+        try:
+            from PIL import Image
+        except ModuleNotFoundError:
+            self.skipTest("Pillow is not here")
+        with Image.open(picture) as image:
+            self.assertEqual(image.n_frames, 1 + int(re.search(r"output.snapshots=(\d+)", gallery["FRONT"][0])[1]))
+
     def test_templates_are_forms_with_a_name_and_fields(self):
         try:
             import yaml

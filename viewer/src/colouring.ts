@@ -12,16 +12,28 @@ export interface Colouring {
   map: MapName | "categories";
   low: number;
   high: number;
+  /** Whether colours run over powers of ten: then low > 0. */
+  log?: boolean;
   values(frame: number): Float32Array;
 }
 
 /** Which values the colours range over: of the whole run, of the picture, or to the very ends. */
 export type RangeOver = "run" | "picture" | "ends";
 
+const LOG_RANGE = 1000;
+
 export function colourOf(colouring: Colouring, value: number): Rgb {
-  const { map, low, high } = colouring;
-  return map === "categories" ? categoryColour(value) : colourAt(map, (value - low) / (high - low || 1));
+  const { map, low, high, log } = colouring;
+  if (map === "categories") return categoryColour(value);
+  return colourAt(
+    map,
+    log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low || 1),
+  );
 }
+
+/** What stands in the middle of the scale. */
+export const middleOf = ({ low, high, log }: Colouring): number =>
+  log ? Math.sqrt(low * high) : 0.5 * (low + high);
 
 /** A hue that the colours of the grains do not have. */
 export function chainColour(colouring: Colouring | null): Rgb {
@@ -122,6 +134,7 @@ export function reranged(
   over: RangeOver,
   frame: number,
   own: { low?: number; high?: number },
+  log = false,
 ): Colouring {
   if (colouring.map === "categories") return colouring;
   const counted = colouring.map === "viridis" && colouring.low === 0;
@@ -132,7 +145,16 @@ export function reranged(
     const all = framesForRange(run).flatMap((k) => [...colouring.values(k)]);
     ranged = { ...colouring, ...rangeOf(all, 0) };
   }
-  return { ...ranged, low: own.low ?? ranged.low, high: own.high ?? ranged.high };
+  ranged = { ...ranged, low: own.low ?? ranged.low, high: own.high ?? ranged.high };
+  return log ? logarithmic(ranged) : ranged;
+}
+
+/** Over powers of ten: as many as the range has, at most LOG_RANGE; what lies below has the lowest colour. */
+function logarithmic(colouring: Colouring): Colouring {
+  const { low, high, map } = colouring;
+  if (high <= 0 || map === "categories") return colouring; // there is none
+  const positive = low > 0 && low < high ? low : high / LOG_RANGE;
+  return { ...colouring, low: positive, log: true, map: map === "PuOr" ? "cividis" : map };
 }
 
 /** At most a few thousand of them: enough for a range. */

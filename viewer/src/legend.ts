@@ -1,4 +1,4 @@
-import { Colouring } from "./colouring";
+import { Colouring, middleOf } from "./colouring";
 import { categoryColour, css, gradient, Rgb } from "./colours";
 import { ForceScale } from "./picture";
 import { scaleFor, short, withUnit } from "./units";
@@ -46,7 +46,7 @@ export function showLegend(
     });
     return input;
   };
-  ticks.append(end("low", low), text(short(scale.factor * (low + high) * 0.5)), end("high", high));
+  ticks.append(end("low", low), text(short(scale.factor * middleOf(colouring))), end("high", high));
   parent.append(text(scale.unit ? `${label} [${scale.unit}]` : label), bar, ticks);
 }
 

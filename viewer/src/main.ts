@@ -1,39 +1,50 @@
 // The page: state, and what happens when it changes.
+import { fromHash, toHash, View } from "./address";
 import { chainColour, Colouring, colourings, RangeOver, reranged } from "./colouring";
 import { runColour } from "./colours";
+import { filmType, saveFilm } from "./film";
 import { onKey } from "./keys";
 import { showForceKey, showLegend } from "./legend";
 import { takePayloads } from "./payload";
+import { Player } from "./player";
 import { Plots } from "./plots";
 import { Pointer } from "./pointer";
 import { showProvenance } from "./provenance";
 import { Renderer } from "./renderer";
 import { Run } from "./run";
-import { savePicture } from "./save";
+import { Picture, savePicture } from "./save";
 import { valueAt } from "./series";
+import { mostCompressed, summary } from "./summary";
 import { toggleTheme } from "./theme";
 import { short, withUnit } from "./units";
 
 const $ = <T extends HTMLElement = HTMLElement>(selector: string) => document.querySelector<T>(selector)!;
-const [slider, play, select, over, chains] = [
+const [slider, play, select, over, log, chains, film] = [
   $<HTMLInputElement>(".slider"),
   $<HTMLButtonElement>(".play"),
   $<HTMLSelectElement>(".colouring"),
   $<HTMLSelectElement>(".over"),
+  $<HTMLInputElement>(".log input"),
   $<HTMLInputElement>(".chains input"),
+  $<HTMLButtonElement>(".film"),
 ];
+/** Browsers refuse more changes of the address than a few a second. */
+const ADDRESS_AFTER = 300;
 
 class Page {
   private shown = 0;
-  private frame = 0;
-  private playing = false;
+  frame = 0;
   private highlight = -1;
   /** Ends of the colours that were typed [SI]. */
   private ends: { low?: number; high?: number } = {};
   private choices: Colouring[] = [];
   private renderer: Renderer | null = null;
   private plots: Plots;
+  private player = new Player(play, this);
   private drawPending = false;
+  private filming = false;
+  private opening: View;
+  private addressPending = 0;
 
   constructor(private runs: Run[]) {
     try {
@@ -43,24 +54,67 @@ class Page {
     }
     $("h1").textContent = document.title;
     this.showRunChooser();
-    this.plots = new Plots($(".plots"), runs, (frame) => this.seek(frame));
+    const changed = () => this.remember();
+    this.plots = new Plots($(".plots"), runs, (frame) => this.seek(frame), changed);
     showProvenance($("footer"), runs);
     this.listen();
     this.showRun(0);
     this.seek(mostCompressed(this.run));
+    this.opening = this.view;
+    this.view = fromHash(location.hash, this.opening);
   }
 
+  private get view(): View {
+    const text = (end?: number) => (end === undefined ? "" : String(end));
+    return {
+      run: this.shown,
+      frame: this.frame,
+      colour: select.value,
+      over: over.value,
+      low: text(this.ends.low),
+      high: text(this.ends.high),
+      log: log.checked,
+      chains: chains.checked,
+      plots: this.plots.choices,
+    };
+  }
+
+  private set view(view: View) {
+    if (view.run !== this.shown && view.run < this.runs.length) this.showRun(view.run);
+    if (this.choices.some(({ key }) => key === view.colour)) select.value = view.colour;
+    if ([...over.options].some(({ value }) => value === view.over)) over.value = view.over;
+    [log.checked, chains.checked] = [view.log, view.chains];
+    this.plots.choices = view.plots;
+    const end = (text: string) => (text !== "" && Number.isFinite(Number(text)) ? Number(text) : undefined);
+    this.setEnds({ low: end(view.low), high: end(view.high) });
+    this.seek(view.frame);
+  }
+
+  /** Puts what is shown into the address, a moment later. */
+  private remember(): void {
+    clearTimeout(this.addressPending);
+    this.addressPending = window.setTimeout(() => {
+      const hash = toHash(this.view, this.opening);
+      if (hash !== location.hash.slice(1)) history.replaceState(null, "", `#${hash}`);
+    }, ADDRESS_AFTER);
+  }
+
+  get frames(): number {
+    return this.run.frames;
+  }
   private get run(): Run {
     return this.runs[this.shown];
   }
 
   private listen(): void {
     slider.addEventListener("input", () => this.seek(Number(slider.value)));
-    play.addEventListener("click", () => this.togglePlay());
     select.addEventListener("change", () => this.setEnds({}));
     over.addEventListener("change", () => this.setEnds({}));
     $(".save").addEventListener("click", () => this.save());
+    film.addEventListener("click", () => this.film());
+    log.addEventListener("change", () => this.setEnds({}));
     chains.addEventListener("change", () => this.draw());
+    window.addEventListener("hashchange", () => (this.view = fromHash(location.hash, this.opening)));
     $(".theme").addEventListener("click", () => this.toggleTheme());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.themeChanged());
     document.addEventListener("keydown", (event) =>
@@ -68,7 +122,7 @@ class Page {
         frame: this.frame,
         frames: this.run.frames,
         seek: (k) => this.seek(k),
-        play: () => this.togglePlay(),
+        play: () => this.player.toggle(),
       }),
     );
     if (!this.renderer) return;
@@ -116,6 +170,7 @@ class Page {
     );
     $(".chains").hidden = !this.renderer?.forceScale;
     $(".save").hidden = !this.renderer;
+    film.hidden = !this.renderer || !filmType() || this.run.frames < 2;
     this.ends = {};
     slider.max = String(this.run.frames - 1);
     this.seek(Math.round(share * (this.run.frames - 1)));
@@ -141,6 +196,7 @@ class Page {
   }
 
   private draw(): void {
+    this.remember();
     if (this.drawPending) return;
     this.drawPending = true;
     requestAnimationFrame(() => {
@@ -156,14 +212,16 @@ class Page {
 
   private get colouring(): Colouring | null {
     const chosen = this.choices.find((choice) => choice.key === select.value);
-    return chosen ? reranged(this.run, chosen, over.value as RangeOver, this.frame, this.ends) : null;
+    return chosen
+      ? reranged(this.run, chosen, over.value as RangeOver, this.frame, this.ends, log.checked)
+      : null;
   }
 
   private drawNow(): void {
     if (!this.renderer) return;
     const { colouring } = this;
     this.renderer.draw(this.frame, { colouring, chains: chains.checked, highlight: this.highlight });
-    $(".over").hidden = !colouring || colouring.map === "categories";
+    $(".over").hidden = $(".log").hidden = !colouring || colouring.map === "categories";
     showLegend($(".legend"), colouring, (end, value) => this.setEnds({ ...this.ends, [end]: value }));
     const forceScale = chains.checked ? this.renderer.forceScale : null;
     showForceKey($(".force"), forceScale, this.renderer.pixelsPerMetre, chainColour(colouring));
@@ -174,38 +232,50 @@ class Page {
     document.body.dataset.drawn = String(this.frame);
   }
 
-  private save(): void {
-    const { colouring, renderer } = this;
-    if (!renderer) return;
-    savePicture($<HTMLCanvasElement>("canvas"), {
-      draw: (ratio) => renderer.draw(this.frame, { colouring, chains: chains.checked, highlight: -1 }, ratio),
+  private get picture(): Picture {
+    const { colouring, frame } = this;
+    return {
+      draw: (ratio) =>
+        this.renderer!.draw(frame, { colouring, chains: chains.checked, highlight: -1 }, ratio),
       colouring,
       words: `${this.run.name}, ${this.now()}`,
-      name: `${this.run.name.replaceAll("/", "-")}-${this.run.header.steps[this.frame]}.png`,
-    });
+    };
+  }
+
+  private save(): void {
+    const name = `${this.run.name.replaceAll("/", "-")}-${this.run.header.steps[this.frame]}.png`;
+    savePicture($<HTMLCanvasElement>("canvas"), this.picture, name);
     this.draw();
   }
 
-  private togglePlay(): void {
-    this.playing = !this.playing;
-    play.textContent = this.playing ? "❚❚" : "▶";
-    play.ariaLabel = this.playing ? "Pause" : "Play";
-    if (!this.playing) return;
-    if (this.frame === this.run.frames - 1) this.seek(0);
-    this.playFrom(performance.now(), this.frame);
+  /** Records all frames of this run, as they look now; a second click ends it earlier. */
+  private async film(): Promise<void> {
+    if (this.filming) {
+      this.filming = false;
+      return;
+    }
+    if (this.player.playing) this.player.toggle();
+    this.filming = true;
+    film.textContent = "stop";
+    const [run, back] = [this.shown, this.frame];
+    await saveFilm($<HTMLCanvasElement>("canvas"), {
+      frames: this.run.frames,
+      perSecond: this.perSecond,
+      picture: (frame) => {
+        this.seek(frame);
+        return this.picture;
+      },
+      name: this.run.name.replaceAll("/", "-"),
+      stopped: () => !this.filming || this.shown !== run,
+    });
+    this.filming = false;
+    film.textContent = "save film";
+    if (this.shown === run) this.seek(back);
   }
 
-  /** The whole run takes 5 to 20 s. */
-  private playFrom(begin: number, first: number): void {
-    const perSecond = Math.min(15, Math.max(5, this.run.frames / 12));
-    const tick = (now: number) => {
-      if (!this.playing) return;
-      const frame = first + Math.floor(((now - begin) / 1000) * perSecond);
-      if (frame > this.frame) this.seek(frame);
-      if (this.frame >= this.run.frames - 1) this.togglePlay();
-      else requestAnimationFrame(tick);
-    };
-    requestAnimationFrame(tick);
+  /** Frames: the whole run takes 5 to 20 s. */
+  get perSecond(): number {
+    return Math.min(15, Math.max(5, this.run.frames / 12));
   }
 
   private toggleTheme(): void {
@@ -217,22 +287,6 @@ class Page {
     this.plots.redraw();
     this.draw();
   }
-}
-
-/** The frame with the largest strain; the last one where the series has none. */
-function mostCompressed(run: Run): number {
-  const strains = run.header.times.map((time) => valueAt(run.series, "strain", time));
-  return strains.every(Number.isFinite) ? strains.indexOf(Math.max(...strains)) : run.frames - 1;
-}
-
-/** "compaction · mpm · 20 grains · friction 0.3". */
-function summary(run: Run): string {
-  const { experiment, contact } = run.header.settings;
-  const words = [experiment?.loading, experiment?.model].filter(Boolean).map(String);
-  if (run.grains > 1) words.push(`${run.grains} grains`);
-  else if (!run.hasOutlines) words.push(`${run.column("particle.x", 0).length} primaries`);
-  if (contact) words.push(`friction ${contact.friction}`);
-  return words.join(" · ");
 }
 
 function say(words: string): void {

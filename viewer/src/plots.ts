@@ -25,6 +25,7 @@ class Plot {
   private dot = document.createElement("div");
   private chart?: uPlot;
   private selects: [HTMLSelectElement, HTMLSelectElement];
+  private log = document.createElement("input");
   private reading = document.createElement("output");
   private scales: [Scale, Scale] = [
     { factor: 1, unit: "" },
@@ -38,13 +39,19 @@ class Plot {
     columns: string[],
     start: [string, string],
     private seek: (frame: number) => void,
+    private changed: () => void,
   ) {
     const [y, x] = [start[1], start[0]].map((chosen) => this.select(columns, chosen));
     this.selects = [x, y];
     const caption = document.createElement("figcaption");
     y.ariaLabel = "Vertical axis";
     x.ariaLabel = "Horizontal axis";
-    caption.append(y, " over ", x, this.reading);
+    this.log.type = "checkbox";
+    this.log.addEventListener("change", () => this.choose());
+    const log = document.createElement("label");
+    log.title = "Vertical axis over powers of ten";
+    log.append(this.log, " log");
+    caption.append(y, " over ", x, log, this.reading);
     this.dot.className = "dot";
     this.element.append(caption);
     this.element.addEventListener("click", (event) => this.onClick(event));
@@ -53,13 +60,34 @@ class Plot {
   private select(columns: string[], chosen: string): HTMLSelectElement {
     const select = document.createElement("select");
     for (const column of columns) select.append(new Option(label(column), column, false, column === chosen));
-    select.addEventListener("change", () => this.build());
+    select.addEventListener("change", () => this.choose());
     return select;
+  }
+
+  private choose(): void {
+    this.build();
+    this.changed();
+  }
+
+  /** "strain,stress_top", or "strain,stress_top,log". */
+  get choice(): string {
+    return [...this.selects.map((select) => select.value), ...(this.log.checked ? ["log"] : [])].join();
+  }
+
+  /** Takes such words, as far as there are such columns. */
+  set choice(words: string) {
+    const [x, y, log] = words.split(",");
+    [x, y].forEach((column, k) => {
+      if ([...this.selects[k].options].some(({ value }) => value === column)) this.selects[k].value = column;
+    });
+    this.log.checked = log === "log";
+    this.build();
   }
 
   private values(run: Run, axis: 0 | 1): number[] {
     const column = run.series.columns.get(this.selects[axis].value);
-    return [...(column?.values ?? [])].map((value) => value * this.scales[axis].factor);
+    const values = [...(column?.values ?? [])].map((value) => value * this.scales[axis].factor);
+    return axis === 1 && this.log.checked ? values.map((value) => (value > 0 ? value : NaN)) : values;
   }
 
   build(): void {
@@ -72,12 +100,14 @@ class Plot {
       return scaleFor(largest, columns.find((c) => c)?.unit ?? "");
     }) as [Scale, Scale];
     const data = this.runs.map((run) => [this.values(run, 0), this.values(run, 1)]);
-    this.chart = new uPlot(this.options(), [null, ...data] as unknown as uPlot.AlignedData, this.element);
+    const options = this.options(data.flatMap(([, y]) => y));
+    this.chart = new uPlot(options, [null, ...data] as unknown as uPlot.AlignedData, this.element);
     this.chart.over.append(this.dot);
     this.mark(this.shown, this.frame);
   }
 
-  private options(): uPlot.Options {
+  /** y: all that is drawn, along the vertical axis. */
+  private options(y: number[]): uPlot.Options {
     const ink = () => getComputedStyle(this.element).getPropertyValue("--soft-ink").trim();
     const line = () => getComputedStyle(this.element).getPropertyValue("--line").trim();
     const axis = (k: 0 | 1) => {
@@ -110,7 +140,10 @@ class Plot {
       legend: { show: false },
       cursor: { show: false },
       padding: [10, 14, 0, 0],
-      scales: { x: { time: false, range: padded }, y: { range: padded } },
+      scales: {
+        x: { time: false, range: padded },
+        y: this.log.checked ? { distr: 3, range: decades(y) } : { range: padded },
+      },
       series: [{}, ...this.runs.map((_, index) => curve(index))],
       axes: [axis(0), axis(1)],
     };
@@ -192,17 +225,26 @@ export function padded(_: uPlot, low: number | null, high: number | null): [numb
   return [low >= 0 && low < 0.3 * high ? Math.min(0, low) : low - pad, high + pad];
 }
 
+/** Whole powers of ten around the data, six at most. */
+function decades(values: number[]): [number, number] {
+  const known = values.filter(Number.isFinite);
+  if (known.length === 0) return [0.1, 1];
+  const [least, most] = known.reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [Infinity, -Infinity]);
+  const top = Math.max(Math.ceil(Math.log10(most)), Math.floor(Math.log10(least)) + 1);
+  return [10 ** Math.max(top - 6, Math.floor(Math.log10(least))), 10 ** top];
+}
+
 export class Plots {
   private plots: Plot[] = [];
 
-  constructor(parent: HTMLElement, runs: Run[], seek: (frame: number) => void) {
+  constructor(parent: HTMLElement, runs: Run[], seek: (frame: number) => void, changed: () => void) {
     const columns = [...new Set(runs.flatMap((run) => [...run.series.columns.keys()]))].filter(
       (c) => !HIDDEN.has(c),
     );
     const there = (pair: [string, string]) => pair.every((column) => columns.includes(column));
     for (const pairs of [FIRST, SECOND]) {
       const start = pairs.find(there);
-      if (start) this.plots.push(new Plot(runs, columns, start, seek));
+      if (start) this.plots.push(new Plot(runs, columns, start, seek, changed));
     }
     parent.append(...this.plots.map((plot) => plot.element));
     parent.hidden = this.plots.length === 0;
@@ -210,6 +252,14 @@ export class Plots {
     new ResizeObserver(() => this.plots.forEach((plot) => plot.resize())).observe(parent);
   }
 
+  get choices(): string[] {
+    return this.plots.map((plot) => plot.choice);
+  }
+  set choices(words: string[]) {
+    this.plots.forEach((plot, k) => {
+      if (words[k] !== undefined && words[k] !== plot.choice) plot.choice = words[k];
+    });
+  }
   mark(shown: number, frame: number): void {
     for (const plot of this.plots) plot.mark(shown, frame);
   }

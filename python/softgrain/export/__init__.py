@@ -2,6 +2,8 @@
 
 from .contacts import write_contacts
 from .particles import write_csv, write_lammps, write_xyz
+from .rocrate import write_rocrate
 from .svg import scale_of, write_svg
+from .vtkhdf import write_vtkhdf
 
-__all__ = ["scale_of", "write_contacts", "write_csv", "write_lammps", "write_svg", "write_xyz"]
+__all__ = ["scale_of", "write_contacts", "write_csv", "write_lammps", "write_rocrate", "write_svg", "write_vtkhdf", "write_xyz"]

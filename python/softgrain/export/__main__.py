@@ -7,17 +7,25 @@ import softgrain
 
 from .. import colours
 from ..verb import carry_out, refuse_space
-from . import scale_of, write_contacts, write_csv, write_lammps, write_svg, write_xyz
+from . import scale_of, write_contacts, write_csv, write_lammps, write_rocrate, write_svg, write_vtkhdf, write_xyz
 from .paraview import write_scene
 
-MOVIES = {"xyz": (write_xyz, "xyz"), "lammps": (write_lammps, "dump")}  # all frames in one file
+MOVIES = {"xyz": (write_xyz, "xyz"), "lammps": (write_lammps, "dump"), "vtkhdf": (write_vtkhdf, "vtkhdf")}  # all frames in one file
+KNOW_SPACE = {"vtkhdf", "rocrate"}
 ONE_FRAME = {"csv": (write_csv, "csv"), "contacts": (write_contacts, "contacts.csv"), "svg": (write_svg, "svg")}
 
 
 def export(options):
     """Writes the file under its name when it is whole; returns its path."""
     run = softgrain.open(options.run)
-    refuse_space(run, "softgrain export")
+    if options.to not in KNOW_SPACE:
+        refuse_space(run, f"softgrain export --to {options.to}")
+    if options.to != "rocrate" and (options.license or options.author):
+        raise ValueError("--license and --author belong to --to rocrate")
+    if options.to == "rocrate":
+        if options.output:
+            raise ValueError(f"--to rocrate describes {run.path} where it is; it takes no --output")
+        return write_rocrate(run, options.license, options.author)
     if len(run) == 0:
         raise ValueError(f"{run.path} has no snapshots")
     if options.to == "paraview":
@@ -32,8 +40,11 @@ def export(options):
     path = Path(options.output) if options.output else run.path / "export" / f"{name}.{suffix}"
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(path.name + ".tmp")
-    with temporary.open("w") as file:
-        write(*what(run, options.to, frame), file)
+    if options.to == "vtkhdf":
+        write(*what(run, options.to, frame), temporary)
+    else:
+        with temporary.open("w") as file:
+            write(*what(run, options.to, frame), file)
     return temporary.replace(path)
 
 

@@ -12,7 +12,7 @@ from . import Film, encode
 
 DURATION = 10  # of a film that says nothing else [s]
 SLOWEST, FASTEST = 5, 30  # frames a second
-WIDTHS = {".mp4": 1280, ".gif": 800, "": 1280}  # [px]
+WIDTHS = {".mp4": 1280, ".gif": 800, ".webp": 640, "": 1280}  # [px]
 
 
 def make(options):
@@ -20,16 +20,19 @@ def make(options):
     path = Path(options.output)
     suffix = path.suffix.lower()
     if suffix not in WIDTHS:
-        raise ValueError(f"--output {path}: the name must end in .mp4 or .gif; one without an ending is a folder of PNG files")
+        raise ValueError(f"--output {path}: the name must end in .mp4, .gif or .webp; one without an ending is a folder of PNG files")
     run = softgrain.open(options.run)
     refuse_space(run, "softgrain movie")
     with style():
-        film = Film(run, options.width or WIDTHS[suffix])
+        width = options.width or WIDTHS[suffix]
+        film = Film(run, width * encode.SMOOTHING if suffix == ".webp" else width)
         rate = options.fps or min(FASTEST, max(SLOWEST, len(film) / DURATION))
         comment = "; ".join(provenance([run]))
         path.parent.mkdir(parents=True, exist_ok=True)
         if suffix == ".gif":
             return encode.write_gif(film, path, rate, comment)
+        if suffix == ".webp":
+            return encode.write_webp(film, path, rate, comment)
         if suffix == ".mp4" and shutil.which(encode.FFMPEG):
             return encode.write_mp4(film, path, rate, comment)
         if suffix == ".mp4":

@@ -1,4 +1,4 @@
-"""Frames into files: H.264 in MP4 by ffmpeg, GIF by Pillow, or one PNG for each."""
+"""Frames into files: H.264 in MP4 by ffmpeg, GIF and WebP by Pillow, or one PNG for each."""
 
 import subprocess
 
@@ -9,6 +9,9 @@ from PIL.PngImagePlugin import PngInfo
 FFMPEG = "ffmpeg"
 PALETTE = 256  # colours of a GIF
 ONE_FRAME = "frame_{:05}.png"
+SMOOTHING = 3  # of frames that become a WebP
+LAST = 1500  # how long its last frame stands [ms]
+IMAGE_DESCRIPTION = 0x010E  # tag of Exif
 
 
 def write_mp4(film, path, rate, comment):
@@ -44,6 +47,25 @@ def write_gif(film, path, rate, comment):
     try:
         next(images).save(temporary, "GIF", save_all=True, append_images=images, duration=10 * hundredths, loop=0,
                           comment=comment.encode(), optimize=False)
+        return temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_webp(film, path, rate, comment):
+    """For a page of text: few bytes, plays again and again, and rests at the last frame. Frames are SMOOTHING times as
+    large as the film, and are made smaller, so that no seams of cells are seen."""
+    frames = (Image.fromarray(frame) for frame in film)
+    smaller = (frame.resize((frame.width // SMOOTHING, frame.height // SMOOTHING), Image.LANCZOS) for frame in frames)
+    about = Image.Exif()
+    about[IMAGE_DESCRIPTION] = comment
+    first, *others = smaller
+    duration = round(1000 / rate)
+    durations = [duration] * len(others) + [LAST]
+    temporary = path.with_name(path.name + ".tmp")
+    try:
+        first.save(temporary, "WEBP", save_all=True, append_images=others, duration=durations, loop=0, quality=60, method=4,
+                   exif=about.tobytes())
         return temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)

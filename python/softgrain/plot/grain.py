@@ -2,15 +2,15 @@
 
 from .. import NotRecorded, colours
 from .layout import panel_grid
-from .rows import ROWS
+from .rows import rows_of
 from .scene import draw_walls, extent
 from .stages import choose_stages
 
 WALL = 0.05  # thickness of a wall over the grain's height at the start
 
 
-def draw_grain(run, rows=ROWS):
-    """Draws the rows that the snapshots have the data for. Raises NotRecorded if the run has no snapshot."""
+def draw_grain(run, rows=None):
+    """Draws the rows (all, if none are named) that the snapshots have the data for. Raises NotRecorded if the run has no snapshot."""
     if len(run) == 0:
         raise NotRecorded("no snapshots to draw")
     stages = choose_stages(run, run.times)
@@ -20,7 +20,7 @@ def draw_grain(run, rows=ROWS):
     places = [frames.index(stage.snapshot) for stage in stages]
     bottom, top = extent(snapshots[0], 0)[2:]
     wall = WALL * (top - bottom)
-    views = [view for view in (_view(row, snapshots) for row in rows) if view]
+    views = [view for view in (_view(row, snapshots) for row in rows or rows_of(run.case)) if view]
     grid = panel_grid([extent(snapshots[place], wall) for place in places], len(views))
     for row, view in enumerate(views):
         for panel, place in zip(grid.panels[row], places):

@@ -3,6 +3,8 @@
 Each is built from snapshots of the whole run, so that its scale is the same in every panel. It raises NotRecorded
 when they lack what it shows. To add a way: add a class, and its name to ROWS."""
 
+from functools import partial
+
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, Normalize
@@ -91,16 +93,17 @@ class Forces:
 
 
 class Kinds:
-    """The grains of a mixture, coloured by kind, in the order of the case."""
+    """The grains of a mixture, coloured by kind, in the order of the case; `names` are theirs."""
 
     name = "kinds"
     colours = ("#F0D9A8", "#3B6FA0", "#8C3B2E", "#5C8A4A")
 
-    def __init__(self, snapshots):
+    def __init__(self, snapshots, names=()):
         if "kind" not in snapshots[0].particles:
             raise NotRecorded("one kind of grains")
         self.snapshots = snapshots
         self.kinds = np.unique(snapshots[0].particles["kind"].astype(int))
+        self.names = names
 
     def draw(self, panel, index):
         snapshot = self.snapshots[index]
@@ -114,7 +117,10 @@ class Kinds:
         axes = grid.add_key_axes(row, width=14, height=0.7)
         axes.set_axis_off()
         marks = [Line2D([], [], color=self._colour(kind), marker="o", ls="none", ms=4) for kind in self.kinds]
-        axes.legend(marks, [f"kind {kind + 1}" for kind in self.kinds], loc="center left", borderaxespad=0, handletextpad=0.4)
+        axes.legend(marks, [self._name(kind) for kind in self.kinds], loc="center left", borderaxespad=0, handletextpad=0.4)
+
+    def _name(self, kind):
+        return self.names[kind] if kind < len(self.names) else f"kind {kind + 1}"
 
 
 class Layers:
@@ -174,3 +180,9 @@ class Cells:
 
 
 ROWS = (Pressure, Forces, Kinds, Layers, Cells)
+
+
+def rows_of(case):
+    """ROWS, which call the kinds of grains what the case calls them."""
+    names = [kind["name"] for kind in case.get("kind", ()) if "name" in kind]
+    return [partial(Kinds, names=names) if row is Kinds else row for row in ROWS]

@@ -8,6 +8,7 @@
 
 #include "live_case.hpp"
 #include "live_simulation.hpp"
+#include "softgrain/core/error.hpp"
 
 namespace softgrain {
 namespace {
@@ -52,6 +53,7 @@ EMSCRIPTEN_KEEPALIVE void live_drive_to(double height) { live()->drive_to(height
 /// One step; why there is no further one, "" if there is.
 EMSCRIPTEN_KEEPALIVE const char* live_step() {
   return words_of([] {
+    require(live() != nullptr, "no simulation has begun");
     live()->step();
     return live()->early_end();
   });

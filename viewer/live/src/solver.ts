@@ -97,6 +97,7 @@ class Loop {
   private goal = 0;
   private height = 0;
   private paused = false;
+  private begun = false; // there is a simulation: before it a call into the module would follow null
   private over = false;
   private underWay = false; // a picture
   private changed = false; // since the last picture
@@ -111,7 +112,9 @@ class Loop {
   }
 
   begin(text: string, pace: number): void {
+    this.begun = false;
     const words = begin(text);
+    this.begun = words === "";
     this.over = words !== "";
     this.changed = this.underWay = false;
     if (this.over) return port.postMessage({ kind: "over", words });
@@ -125,7 +128,7 @@ class Loop {
   }
 
   drive(height: number): void {
-    if (this.over) return;
+    if (!this.begun || this.over) return;
     this.goal = height;
     module.live_drive_to(height);
     this.resting = 0;
@@ -143,12 +146,13 @@ class Loop {
   }
 
   steps(count: number): void {
+    if (!this.begun) return;
     for (let k = 0; k < count && !this.over; ++k) this.step();
     this.send();
   }
 
   private get idle(): boolean {
-    return this.paused || this.over || this.resting >= STEPS_TO_REST;
+    return !this.begun || this.paused || this.over || this.resting >= STEPS_TO_REST;
   }
 
   private schedule(): void {
