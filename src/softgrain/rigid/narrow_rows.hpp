@@ -17,13 +17,13 @@ struct FloatColumns {
 struct WideColumns {
   Wide x, y;
 };
-inline WideColumns load_wide_columns(const Vec<2>* rows) {
+[[gnu::always_inline]] inline WideColumns load_wide_columns(const Vec<2>* rows) {
   const LaneColumns low = load_columns(rows), high = load_columns(rows + lane_count);
   return {{low.x, high.x}, {low.y, high.y}};
 }
 
 template <class Row>
-double pair_at(const Row& row) {
+[[gnu::always_inline]] inline double pair_at(const Row& row) {
   double pair;
   static_assert(sizeof row == sizeof pair);
   std::memcpy(&pair, &row, sizeof pair);
@@ -32,7 +32,7 @@ double pair_at(const Row& row) {
 
 /// Rows index[0..7], as columns.
 template <class Row>
-FloatColumns gather_columns(const Row* rows, const int* index) {
+[[gnu::always_inline]] inline FloatColumns gather_columns(const Row* rows, const int* index) {
   const auto four = [&](int k, int l, int m, int n) {
     return reinterpret_cast<Narrow::Floats>(FloatPairs{pair_at(rows[index[k]]), pair_at(rows[index[l]]),
                                                        pair_at(rows[index[m]]), pair_at(rows[index[n]])});
@@ -44,7 +44,7 @@ FloatColumns gather_columns(const Row* rows, const int* index) {
 
 /// The inverse of gather_columns: all indices must differ, or hold the same row.
 template <class Row>
-void scatter_columns(const FloatColumns& columns, Row* rows, const int* index) {
+[[gnu::always_inline]] inline void scatter_columns(const FloatColumns& columns, Row* rows, const int* index) {
   const auto store = [&](int lane, double pair) { std::memcpy(&rows[index[lane]], &pair, sizeof pair); };
   const auto rows0145 =
       reinterpret_cast<FloatPairs>(__builtin_shufflevector(columns.x, columns.y, 0, 8, 1, 9, 4, 12, 5, 13));
@@ -54,12 +54,12 @@ void scatter_columns(const FloatColumns& columns, Row* rows, const int* index) {
   store(4, rows0145[2]), store(5, rows0145[3]), store(6, rows2367[2]), store(7, rows2367[3]);
 }
 
-inline Narrow::Floats gather(const float* numbers, const int* index) {
+[[gnu::always_inline]] inline Narrow::Floats gather(const float* numbers, const int* index) {
   Narrow::Floats lanes;
   for (int lane = 0; lane < Wide::size; ++lane) lanes[lane] = numbers[index[lane]];
   return lanes;
 }
-inline void scatter(Narrow::Floats lanes, float* numbers, const int* index) {
+[[gnu::always_inline]] inline void scatter(Narrow::Floats lanes, float* numbers, const int* index) {
   for (int lane = 0; lane < Wide::size; ++lane) numbers[index[lane]] = lanes[lane];
 }
 

@@ -89,29 +89,32 @@ Violation NarrowSweeps::sweep_contacts(Block& block, float b) {
   return Measured ? violation.total(relaxation_) : Violation{};
 }
 
-/// The velocities that the block's own contacts have changed in its last turn, by gain_ = H (p_k - p_k-1) in
-/// units of M, go ahead with its impulses.
+/// v <- v + b (v'' - v'), where the block's own contacts made v'' of v' in its last turn. Spins follow where
+/// they matter to them.
 Violation NarrowSweeps::sweep_block(int k, double ahead, bool measured) {
   Block& block = blocks_[listed_[k]];
   const auto b = static_cast<float>(ahead);
-  const auto begin = [b](auto& now, auto& start, const auto& end) {
-    const auto last = now;
-    if (b > 0) now += b * (end - start);
-    start = last;
+  const auto [begin, end] = block.bodies;
+  const bool spins = !block.frictional.eights.empty();
+  const auto go_ahead = [&](auto* now, auto* start, const auto* last, const auto& add) {
+    for (int i = begin; i < end; ++i) {
+      const auto at = now[i];
+      if (b > 0) add(now[i], start[i], last[i]);
+      start[i] = at;
+    }
   };
-  const bool turns = !block.frictional.eights.empty();
-  block.turn = sweeps_;
-  for (int i = block.bodies.begin; i < block.bodies.end; ++i) {
-    begin(velocity_[i].x, start_[i].x, end_[i].x), begin(velocity_[i].y, start_[i].y, end_[i].y);
-    if (turns) begin(spin_[i], spin_start_[i], spin_end_[i]);
-  }
+  go_ahead(velocity_.data(), start_.data(), end_.data(),
+           [b](Velocity& v, const Velocity& start, const Velocity& last) {
+             v.x += b * (last.x - start.x), v.y += b * (last.y - start.y);
+           });
+  if (spins)
+    go_ahead(spin_.data(), spin_start_.data(), spin_end_.data(),
+             [b](float& s, float start, float last) { s += b * (last - start); });
   const Violation violation =
       measured ? sweep_contacts<true, true>(block, b) : sweep_contacts<true, false>(block, b);
-  std::copy_n(&velocity_[block.bodies.begin], block.bodies.end - block.bodies.begin,
-              &end_[block.bodies.begin]);
-  if (turns)
-    std::copy_n(&spin_[block.bodies.begin], block.bodies.end - block.bodies.begin,
-                &spin_end_[block.bodies.begin]);
+  std::copy(velocity_.begin() + begin, velocity_.begin() + end, end_.begin() + begin);
+  if (spins) std::copy(spin_.begin() + begin, spin_.begin() + end, spin_end_.begin() + begin);
+  block.turn = sweeps_;
   return violation;
 }
 
@@ -229,30 +232,6 @@ void NarrowSweeps::load(const RigidContacts<2>& contacts, std::span<const double
   }
 }
 
-void NarrowSweeps::take_bodies(const RigidParticles<2>& particles, const RigidContacts<2>& contacts,
-                               double relaxation) {
-  bodies_ = static_cast<int>(particles.velocity.size());
-  if (relaxation_ != static_cast<float>(relaxation)) blocks_.clear();
-  relaxation_ = static_cast<float>(relaxation);
-  inertia_ratio_ = static_cast<float>(particles.inertia_ratio);
-  blocks_.resize(contacts.blocks.empty() ? 0 : contacts.blocks.back().list + 1);
-  listed_.clear();
-  for (const ContactBlock& block : contacts.blocks) listed_.push_back(block.list);
-  velocity_.resize(bodies_ + blocks_.size());
-  spin_.resize(bodies_ + blocks_.size());
-  start_.resize(bodies_), end_.resize(bodies_);
-  spin_start_.resize(bodies_), spin_end_.resize(bodies_);
-  list_of_.resize(bodies_, -1);
-  sweeps_ = 0;
-  parallel_ranges(bodies_, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      const Vec<2>& v = particles.velocity[i];
-      velocity_[i] = {static_cast<float>(v[0]), static_cast<float>(v[1])};
-      spin_[i] = static_cast<float>(particles.spin[i][0]);
-    }
-  });
-}
-
 void NarrowSweeps::take_contacts(const RigidContacts<2>& contacts, const ContactBlock& listed,
                                  std::span<const double> offset) {
   Block& block = blocks_[listed.list];
@@ -271,28 +250,6 @@ void NarrowSweeps::take_contacts(const RigidContacts<2>& contacts, const Contact
   spin_[idle] = 0;
   load(contacts, offset, listed, block.frictionless);
   load(contacts, offset, listed, block.frictional);
-}
-
-/// Of the bodies of a grain.
-void NarrowSweeps::take_range(const RigidContacts<2>& contacts, const ContactBlock& listed, Block& block) {
-  block.bodies = {bodies_, 0};
-  for (int c = listed.begin(); c < listed.end(); ++c) {
-    block.bodies.begin = std::min(block.bodies.begin, contacts.body_a[c]);
-    block.bodies.end = std::max(block.bodies.end, contacts.body_b[c] + 1);
-  }
-  for (int i = block.bodies.begin; i < block.bodies.end; ++i) list_of_[i] = listed.list;
-}
-
-/// Bodies of grains that have contacts between grains; after all blocks inside them.
-void NarrowSweeps::take_touched(const RigidContacts<2>& contacts, const ContactBlock& between) {
-  std::vector<int> bodies;
-  for (int c = between.begin(); c < between.end(); ++c)
-    bodies.push_back(contacts.body_a[c]), bodies.push_back(contacts.body_b[c]);
-  std::sort(bodies.begin(), bodies.end());
-  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-  touched_.clear();
-  for (const int body : bodies)
-    if (list_of_[body] >= 0) touched_.push_back({.body = body, .list = list_of_[body]});
 }
 
 void NarrowSweeps::read_impulses(const ContactBlock& listed, std::span<Vec<2>> impulse) const {
