@@ -22,11 +22,11 @@ using Integers = int __attribute__((vector_size(32)));
 
 /// Velocities of the bodies a and b of eight contacts, and the impulses that change them.
 struct NarrowSweeps::Bodies {
-  Bodies(Velocity* velocity, const Eight& contact)
+  [[gnu::always_inline]] Bodies(Velocity* velocity, const Eight& contact)
       : rows(velocity), of(contact), a(gather_columns(rows, of.a)), b(gather_columns(rows, of.b)) {}
 
   /// v_a -= P/m_a, v_b += P/m_b.
-  void apply(Floats P_x, Floats P_y) {
+  [[gnu::always_inline]] void apply(Floats P_x, Floats P_y) {
     a.x -= of.inverse_a * P_x, a.y -= of.inverse_a * P_y;
     b.x += of.inverse_b * P_x, b.y += of.inverse_b * P_y;
     scatter_columns(a, rows, of.a);
@@ -145,10 +145,14 @@ void NarrowSweeps::end_sweep() {
   for (Touched& touched : touched_) {
     Block& block = blocks_[touched.list];
     const Velocity& v = velocity_[touched.body];
-    if (block.turn == sweeps_) touched.velocity = v, touched.spin = spin_[touched.body];
+    if (block.turn == sweeps_) {
+      touched.velocity = v;
+      touched.spin = spin_[touched.body];
+      continue;
+    }
+    const float dx = v.x - touched.velocity.x, dy = v.y - touched.velocity.y;
     const float turned = block.frictional.eights.empty() ? 0 : std::abs(spin_[touched.body] - touched.spin);
-    const float gone = std::hypot(v.x - touched.velocity.x, v.y - touched.velocity.y);
-    block.moved = std::max(block.moved, 2 * (gone + turned));
+    block.moved = std::max(block.moved, 2 * (std::sqrt(dx * dx + dy * dy) + turned));
   }
   ++sweeps_;
 }

@@ -95,9 +95,7 @@ TEST_CASE("grains that leave the sweep when they have converged end at the solut
     for (const double tolerance : {1e-3, 1e-4, 1e-5}) {
       const auto solved = stepped(friction, options(tolerance), Precision::single, &report);
       CHECK(report.converged);
-      const double error = largest_difference(solved.particles, reference.particles);
-      MESSAGE(tolerance, " ", report.sweeps, " ", error);
-      CHECK(error < 50 * tolerance);
+      CHECK(largest_difference(solved.particles, reference.particles) < 4 * tolerance);
     }
   }
 }
@@ -107,7 +105,6 @@ TEST_CASE("no contact of a grain that has left the sweep is violated in the end"
     StepReport report;
     const auto solved = stepped(frictionless, options(tolerance), Precision::single, &report);
     REQUIRE(report.converged);
-    MESSAGE(tolerance, " ", report.sweeps, " ", worst_violation(solved));
     CHECK(worst_violation(solved) < 1.5 * 2 * tolerance);
   }
 }
