@@ -15,7 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from softgrain.reproduce import curves, execute, plan, single_grain, verdicts
+from softgrain import Snapshot
+from softgrain.reproduce import __main__ as command, causes, curves, execute, geometry, page, plan, results, single_grain, verdict, verdicts
 
 
 def curve_of(z=None, stress=None, last=0.36):
@@ -25,7 +26,7 @@ def curve_of(z=None, stress=None, last=0.36):
     zeros = np.zeros_like(strain)
     z = zeros if z is None else z(phi)
     stress = zeros if stress is None else stress(strain)
-    return curves.Compaction(strain, phi, 0.97 * phi, stress, stress, stress, z)
+    return curves.Compaction(strain, phi, 0.97 * phi, stress, stress, stress, z, z, z)
 
 
 class Compactions(unittest.TestCase):
@@ -45,6 +46,17 @@ class Compactions(unittest.TestCase):
             held += abs(law.exponent - 0.5) < law.half_width
             self.assertGreater(law.half_width, 0.02)
         self.assertGreater(held, 25)
+
+    def test_an_exponent_from_another_packing_fraction_over_another_range_is_found_again(self):
+        law = curves.coordination_law(curve_of(lambda phi: 3 + 4 * np.maximum(phi - 0.84, 0) ** 0.5), phi_c=0.84, last=0.92)
+        self.assertAlmostEqual(law.exponent, 0.5, delta=0.01)
+
+    def test_one_wrong_value_at_the_start_hardly_moves_an_exponent(self):
+        def z(phi):
+            values = 3 + 4 * np.maximum(phi - 0.8, 0) ** 0.5
+            values[np.argmax(phi >= 0.8)] += 0.3
+            return values
+        self.assertAlmostEqual(curves.coordination_law(curve_of(z)).exponent, 0.5, delta=0.05)
 
     def test_a_coordination_that_never_rises_has_no_exponent(self):
         self.assertIsNone(curves.coordination_law(curve_of()))
@@ -88,16 +100,94 @@ class SingleGrains(unittest.TestCase):
         self.assertAlmostEqual(single_grain.linear_strain(strain, bent, drop=0.1), 0.02 / 0.9, delta=2e-3)
 
 
+class Bands(unittest.TestCase):
+    def test_a_band_spans_its_curves_and_its_line_is_their_mean(self):
+        three = [curve_of(stress=lambda e, k=k: k * e) for k in (1, 2, 6)]
+        one = curves.band(three, lambda c: c.strain, lambda c: c.stress)
+        for values, factor in ((one.mean, 3), (one.low, 1), (one.high, 6)):
+            np.testing.assert_allclose(values, factor * one.x, atol=1e-12)
+
+    def test_twice_the_stress_is_a_ratio_of_two_that_scaling_takes_away(self):
+        soft, stiff = (curve_of(stress=lambda e, k=k: k * (1 + e)) for k in (1, 2))
+        self.assertAlmostEqual(curves.ratio(stiff, soft, "stress"), 2)
+        self.assertAlmostEqual(curves.ratio(stiff, soft, "stress", scaled=True), 1)
+        self.assertAlmostEqual(curves.difference(stiff, soft, "stress"), 1.24, delta=0.05)
+
+
+def ring(x, y, radius, vertices=64):
+    angle = 2 * np.pi * np.arange(vertices) / vertices
+    return np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle)])
+
+
+class Neighbours(unittest.TestCase):
+    """Five disks of radius 1 in a row, gaps 0, 0.1, 0.2, 0.3."""
+
+    centres = np.array([0, 2, 4.1, 6.3, 8.6])
+
+    def snapshot(self, contacts):
+        outlines = [ring(x, 0, 1) for x in self.centres]
+        grain = np.repeat(np.arange(5), 64)
+        return Snapshot(0, 0.0, {"position": np.column_stack([self.centres, 0 * self.centres]), "radius": np.ones(5),
+                                 "grain": np.arange(5)}, contacts, outlines={"position": np.vstack(outlines), "grain": grain})
+
+    def test_pairs_nearer_than_a_reach_are_counted(self):
+        snapshot = self.snapshot({})
+        for reach, pairs in ((0.05, 1), (0.15, 2), (0.25, 3), (0.35, 4)):
+            self.assertAlmostEqual(geometry.coordination_within(snapshot, reach), 2 * pairs / 5)
+
+    def test_grains_at_a_wall_are_left_out_and_a_pair_counts_once(self):
+        pair = np.array([[0, 1], [1, 0], [1, 2], [2, 3], [3, 4], [0, 5], [4, 6]])  # 5, 6: walls
+        snapshot = self.snapshot({"pair": pair, "force": np.ones(7), "position": np.zeros((7, 2)), "normal": np.ones((7, 2))})
+        self.assertAlmostEqual(geometry.coordination_of_inner(snapshot), 2)
+
+
+class Onsets(unittest.TestCase):
+    def test_a_coordination_of_snapshots_is_followed_from_one_to_the_next(self):
+        class Made:
+            times = np.array([0.0, 1.0, 2.0, 3.0])
+            series = {"time": times, "strain": 0.05 * times, "phi_0": 0.7 + 0.03 * times}
+
+            def __getitem__(self, index):
+                return index
+        strain, phi = verdicts.onset_of(Made(), lambda k: 2.0 * k)
+        self.assertAlmostEqual(strain, 0.075)
+        self.assertAlmostEqual(phi, 0.745)
+        self.assertIsNone(verdicts.onset_of(Made(), lambda k: 1.0))
+        self.assertEqual(verdicts.onset_of(Made(), lambda k: 3.5), (0.0, 0.7))
+
+    def test_a_tenth_of_the_mean_force_is_load(self):
+        contacts = {"pair": np.array([[0, 1], [1, 2], [2, 3], [3, 5]]), "force": np.array([100.0, 100.0, 1.0, 1000.0]),
+                    "position": np.zeros((4, 2)), "normal": np.ones((4, 2))}
+        self.assertAlmostEqual(geometry.coordination_of_load(Neighbours().snapshot(contacts)), 2 * 2 / 5)
+
+
 class Plans(unittest.TestCase):
     def test_every_scale_compares_both_models_on_the_same_samples(self):
         for scale in plan.SCALES.values():
             runs = {run.name: run for run in plan.planned_runs(plan.FIGURES, scale)}
-            for seed in scale.seeds:
-                sample = {tuple((key, runs[plan.packing_name(model, mu, seed)].values[key])
+            for seed in scale.seeds[plan.FAST, "bpm", 0.0]:
+                sample = {tuple((key, runs[plan.packing_name(plan.FAST, model, mu, seed)].values[key])
                                 for key in ("sample.grains", "sample.seed"))
                           for model in plan.MODELS for mu in plan.FRICTIONS}
                 self.assertEqual(len(sample), 1)
-        self.assertEqual(len(plan.planned_runs(plan.FIGURES, plan.SCALES["paper"])), 7)
+
+    def test_seeds_speed_and_values_are_taken(self):
+        scale = plan.SCALES["quick"].with_seeds(4)
+        runs = plan.planned_runs(("fig2",), scale, "1 m/s", {"contact.wall_friction": "0.1"})
+        fast = [run for run in runs if run.packing == (plan.FAST, "mpm", 0.5)]
+        self.assertEqual([run.values["sample.seed"] for run in fast], [1, 2, 3, 4])
+        self.assertEqual({run.values["loading.wall_velocity"] for run in fast}, {"1 m/s"})
+        self.assertEqual({run.values["contact.wall_friction"] for run in runs}, {"0.1"})
+
+    def test_a_run_tells_the_commands_that_make_it(self):
+        run = plan.PlannedRun("one", "compaction-mpm", {"time.step": "5 us"})
+        self.assertEqual(run.words, "softgrain new one --template compaction-mpm && softgrain run one/case.toml -o out/one "
+                                    "--set 'time.step=5 us'")
+
+    def test_a_value_without_a_key_is_refused(self):
+        self.assertEqual(command.values_of(["a.b=c=d"]), {"a.b": "c=d"})
+        with self.assertRaisesRegex(ValueError, "takes KEY=VALUE"):
+            command.values_of(["a.b"])
 
 
 # Waits for a signal if friction = 9, as a program does that stops after its step; fails if it is 7.
@@ -172,27 +262,66 @@ class Runs(unittest.TestCase):
 
 class Verdicts(unittest.TestCase):
     def test_a_spread_is_mean_and_deviation_and_leaves_out_what_was_not_found(self):
-        spread = verdicts.Spread.of([1.0, None, 3.0])
+        spread = verdict.Spread.of([1.0, None, 3.0])
         self.assertEqual((spread.mean, spread.deviation, spread.count), (2, 1, 2))
         self.assertEqual(spread.text(1), "2.0 ± 1.0")
-        self.assertEqual(verdicts.Spread.of([1.5]).text(1), "1.5")
+        self.assertEqual(verdict.Spread.of([1.5]).text(1), "1.5")
 
     def test_phi_that_follows_the_strain_agrees_and_a_wrong_one_does_not(self):
-        good = {key: [curve_of(z=lambda phi: 30 * (phi - 0.7), stress=lambda e: 1e5 * (1 + e))]
-                for key in ((m, f) for m in plan.MODELS for f in plan.FRICTIONS)}
-        first = next(verdicts._coordination(verdicts.Results({}, good)))
-        self.assertTrue(first.agrees)
+        good = {(plan.FAST, m, f): [curve_of(z=lambda phi: 30 * (phi - 0.7), stress=lambda e: 1e5 * (1 + e))]
+                for m in plan.MODELS for f in plan.FRICTIONS}
+        self.assertTrue(verdicts._packing_fraction(results.Results({}, good)).agrees)
         wrong = curve_of()
         object.__setattr__(wrong, "phi", 1.01 * wrong.phi)
-        bad = {**good, ("mpm", 0.0): [wrong]}
-        self.assertFalse(next(verdicts._coordination(verdicts.Results({}, bad))).agrees)
+        bad = {**good, (plan.FAST, "mpm", 0.0): [wrong]}
+        self.assertFalse(verdicts._packing_fraction(results.Results({}, bad)).agrees)
+
+    def test_the_first_change_that_makes_it_agree_is_the_cause_and_none_is_open(self):
+        wrong, right = (verdict.Changed(cause, words, agrees, f"run {words}") for cause, words, agrees in
+                        ((causes.SLOW_WALL, "slow", False), (causes.CONTACT_RULE, "nodes", True)))
+        found = verdict.judge("3", "s", "0", False, [wrong, right])
+        self.assertEqual((found.cause, found.shown, found.run), (causes.CONTACT_RULE, "nodes", "run nodes"))
+        self.assertEqual(verdict.judge("3", "s", "0", False, [wrong]).cause, causes.OPEN)
+        self.assertEqual(verdict.judge("3", "s", "0", True, [right]).cause, causes.AS_STATED)
+
+    def test_jamming_is_put_down_to_the_contact_rule_where_that_rule_jams_early(self):
+        late, early = (curve_of(z=lambda phi, at=at: 3 * (phi >= at)) for at in (0.82, 0.76))
+        made = results.Results({}, {(plan.FAST, "mpm", 0.0): [late], (plan.EARLY, "mpm", 0.0): [early]})
+        self.assertEqual(verdicts._jamming(made, "mpm", 0.0).cause, causes.CONTACT_RULE)
+        made.packings[plan.EARLY, "mpm", 0.0] = [late]
+        self.assertEqual(verdicts._jamming(made, "mpm", 0.0).cause, causes.OPEN)
+
+    def test_an_exponent_of_a_slow_wall_is_its_cause(self):
+        fast, slow = (curve_of(z=lambda phi, e=e: 3 + 4 * np.maximum(phi - 0.8, 0) ** e) for e in (1.0, 0.5))
+        made = results.Results({}, {(plan.FAST, "mpm", 0.0): [fast], (plan.SLOW, "mpm", 0.0): [slow]})
+        found = next(v for v in verdicts._power_law(made) if v.statement.startswith("MPM, mu = 0:"))
+        self.assertEqual((found.agrees, found.cause), (False, causes.SLOW_WALL))
+
+    def test_causes_are_counted(self):
+        found = [verdict.Verdict("1", "a", "", True), verdict.Verdict("1", "b", "", True), verdict.Verdict("1", "c", "", False, causes.OPEN)]
+        self.assertEqual(causes.headline(found), "3 statements: 2 agree as stated; 1 open")
 
     def test_verdicts_are_written_for_people_and_for_machines(self):
         with tempfile.TemporaryDirectory() as folder:
-            found = [verdicts.Verdict("3", "Z reaches 5.5", "5.4", True)]
-            verdicts.write(found, verdicts.Results({}, {}), Path(folder), "quick", "softgrain 0")
+            found = [verdict.Verdict("3", "Z reaches 5.5", "5.4", True),
+                     verdict.Verdict("3", "jams", "late", False, causes.SLOW_WALL, "0.08", "softgrain run x")]
+            verdict.write(found, results.Results(), Path(folder), "quick", "softgrain 0")
             self.assertEqual(json.loads((Path(folder) / "verdicts.json").read_text())[0]["ours"], "5.4")
-            self.assertIn("| 3 | Z reaches 5.5 | 5.4 | agrees |", (Path(folder) / "verdicts.md").read_text())
+            words = (Path(folder) / "verdicts.md").read_text()
+            self.assertIn("| 3 | Z reaches 5.5 | 5.4 | agrees |", words)
+            self.assertIn("| differs | **agrees with a slow wall**: 0.08 | (1) |", words)
+            self.assertIn("1. `softgrain run x`", words)
+
+    def test_the_page_holds_its_pictures_and_asks_for_nothing_else(self):
+        with tempfile.TemporaryDirectory() as folder:
+            picture = Path(folder) / "fig1.png"
+            picture.write_bytes(b"\x89PNG not really")
+            found = [verdict.Verdict("1", "a < b", "5.4", False, causes.OPEN, "tried", "softgrain run x")]
+            words = page.write(found, [picture], folder, {"program": "softgrain 0"}).read_text()
+            self.assertIn("data:image/png;base64,iVBORyBub3QgcmVhbGx5", words)
+            self.assertIn("a &lt; b", words)
+            self.assertNotIn("http", words)
+            self.assertNotIn("<script", words)
 
 
 if __name__ == "__main__":

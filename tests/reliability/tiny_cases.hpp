@@ -38,6 +38,7 @@ inline Words tiny_path(const std::string& name) {
     add({"loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.17", "loading.unload_at=[0.15]",
          "loading.unload_by=0.04", "loading.max_stress=0", "loading.max_packing_fraction=0",
          "sample.packing_fraction=0.62", "kind.rigid.share=0.5"});
+  if (name == "poured") add({"time.step=\"1 ms\"", "loading.max_strain=0.35"});
   if (name == "jamming")
     add({"sample.grains=9", "loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.15"});
   if (name == "compaction_3d")
@@ -95,8 +96,8 @@ inline std::vector<TinyCase> tiny_cases() {
     else if (name == "rubber_sand" || name == "soft_rigid" || name == "compaction_3d" ||
              name == "sphere_walls")
       cases.push_back({name, source, tiny_path(name)});
-    else if (name == "biaxial" || name == "relaxation" || name == "shear")
-      cases.push_back({name, source, tiny_path(name), name == "relaxation" ? 1U : 2U});
+    else if (name == "biaxial" || name == "relaxation" || name == "shear" || name == "poured")
+      cases.push_back({name, source, tiny_path(name), name == "relaxation" || name == "poured" ? 1U : 2U});
     else
       cases.push_back({name, source, tiny_settings(name)});
     if (name == "soft_rigid") {
@@ -124,6 +125,8 @@ inline std::vector<TinyCase> tiny_cases() {
   add_variant("updated-lagrangian", "diametral-mpm",
               {"mpm.formulation=\"updated_lagrangian\"", "time.step=0", "grain.radius=\"1 mm\"",
                "contact.friction=0", "contact.wall_friction=0"});
+  add_variant("updated-lagrangian-box", "compaction-mpm",
+              {"mpm.formulation=\"updated_lagrangian\"", "mpm.contact_on=\"grid_nodes\"", "time.step=0"});
   return cases;
 }
 

@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
+#include "support/program_runs.hpp"
 #include "support/subprocess.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -31,7 +33,11 @@ TEST_CASE(
     "the paper's figures come out small: what must hold at any size holds, and each statement is judged") {
   const TemporaryDirectory folder;
   const std::string out = folder.path() / "out";
-  const auto result = softgrain::test::run({SOFTGRAIN_PROGRAM, "reproduce", "all", "-o", out});
+  std::vector<std::string> words{SOFTGRAIN_PROGRAM, "reproduce", "all", "-o", out};
+  if (!softgrain::test::torture())
+    words.insert(words.end(), {"--seeds", "1", "--set", "sample.grains=20", "--set", "bpm.primaries=60",
+                               "--set", "mpm.cells=4"});
+  const auto result = softgrain::test::run(words);
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
   const auto verdicts = nlohmann::json::parse(read_text(out + "/verdicts.json"));
@@ -46,4 +52,7 @@ TEST_CASE(
   for (const char* figure :
        {"fig1", "fig2", "fig3", "fig4", "packing_bpm_mu0_seed1", "packing_mpm_mu0.5_seed1"})
     CHECK(std::filesystem::file_size(out + "/" + figure + ".png") > 10000);
+  const std::string page = read_text(out + "/reproduction.html");
+  CHECK(page.find("<script") == std::string::npos);
+  CHECK(page.find("http") == std::string::npos);
 }

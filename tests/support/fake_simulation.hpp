@@ -22,7 +22,7 @@ class FakeModel : public Model {
   Bodies bodies() const override { return {}; }
   std::vector<ContactPoint> contacts() const override { return {}; }
   Outlines outlines() const override { return {}; }
-  std::pair<double, double> extent() const override { return {0, 1}; }
+  std::pair<double, double> extent(int /*axis*/) const override { return {0, 1}; }
   Energies energies() const override { return {}; }
   Numbers numbers(const Box<2>&) const override { return {}; }
   Scene scene(const Box<2>&) const override { return {}; }
@@ -78,7 +78,7 @@ class BouncingBallModel final : public FakeModel {
             .overlap_max = 1e-3 * std::fabs(height_),
             .converged = step_ % 50 != 0};
   }
-  std::pair<double, double> extent() const override {
+  std::pair<double, double> extent(int /*axis*/) const override {
     return {0, height_count_ > 0 ? height_sum_ / static_cast<double>(height_count_) : height_};
   }
   void begin_row() override {

@@ -4,10 +4,13 @@
 #include <numbers>
 #include <vector>
 
+#include "softgrain/core/error.hpp"
+#include "softgrain/experiment/sample.hpp"
 #include "softgrain/soft/explicit_step.hpp"
 #include "softgrain/soft/implicit_step.hpp"
 #include "softgrain/soft/rigid_motion.hpp"
 #include "softgrain/soft/rigid_outline.hpp"
+#include "support/simulations.hpp"
 #include "support/soft_grains.hpp"
 
 using namespace softgrain;
@@ -197,6 +200,29 @@ TEST_CASE("an elastic disk between rigid ones gives way as Johnson says, and the
     CHECK(pile.bottom == doctest::Approx(pile.top).epsilon(5e-3));
     CHECK(pile.approach / (way / 2 * R) == doctest::Approx(1).epsilon(1e-6));
     CHECK(pile.approach / approach_of_rigid(pile.top) == doctest::Approx(1).epsilon(5e-3));
+  }
+}
+
+TEST_CASE("rigid grains that fill their box end a run of walls that go on, and say why") {
+  for (const Integrator integrator : {Integrator::backward_euler, Integrator::symplectic_euler}) {
+    Case c;
+    c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::rigid};
+    c.mpm.integrator = integrator;
+    c.mpm.cells = 4;
+    c.loading.wall_velocity = 0.5;
+    c.box.width = c.box.height = 4.02e-3;
+    for (const double x : {1.005e-3, 3.015e-3})
+      for (const double y : {1.005e-3, 3.015e-3})
+        c.sample.placed.push_back({.centre = {x, y}, .radius = 1e-3, .angle = 0});
+    Simulation simulation = test::simulation_of(complete_sample(c));
+    std::string why;
+    try {
+      while (!simulation.finished()) simulation.step();
+    } catch (const NumericalError& error) {
+      why = error.what();
+    }
+    CHECK(why.find("the rigid grains are jammed") == 0);
+    CHECK(simulation.box().height() == doctest::Approx(4e-3).epsilon(0.03));  // two diameters
   }
 }
 

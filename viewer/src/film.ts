@@ -1,24 +1,20 @@
+import { Film, joined } from "./container";
+import { mp4Of } from "./mp4";
 import { compose, download, Picture } from "./save";
+import { webmOf } from "./webm";
 
-/** What browsers write, those first that most players open. */
-const TYPES: [type: string, ending: string][] = [
-  ["video/mp4;codecs=avc1.64001f", "mp4"],
-  ["video/mp4;codecs=avc1.42e01f", "mp4"],
-  ["video/webm;codecs=vp9", "webm"],
-  ["video/webm;codecs=vp8", "webm"],
-];
+/** What encoders may know, those first whose files most players open: H.264 of three profiles, VP8. */
+const CODECS = ["avc1.640032", "avc1.4d0032", "avc1.420032", "vp8"];
 const WIDTH = 1280; // [pixels]
-const BITS = 8e6; // a second
-/** How long the last picture stands [s]. */
+const BITS = 6e6; // a second
+/** Pictures from one that stands for itself to the next. */
+const KEY_EVERY = 30;
+/** How much longer the last picture stands [s]. */
 const END = 1;
 
-/** The type of films that this browser can write, and the ending of their names; null: none. */
-export function filmType(): [type: string, ending: string] | null {
-  if (typeof MediaRecorder === "undefined" || !HTMLCanvasElement.prototype.captureStream) return null;
-  return TYPES.find(([type]) => MediaRecorder.isTypeSupported(type)) ?? null;
-}
+export const canFilm = (): boolean => typeof VideoEncoder !== "undefined";
 
-interface Film {
+export interface Reel {
   frames: number;
   perSecond: number;
   /** Of a frame; called before it is drawn. */
@@ -29,31 +25,55 @@ interface Film {
   stopped(): boolean;
 }
 
-/** Plays all frames into a film and saves it. It takes as long as the film: the browser records what passes by. */
-export async function saveFilm(canvas: HTMLCanvasElement, film: Film): Promise<void> {
-  const [type, ending] = filmType()!;
+/** Draws all frames into a film and saves it: MP4, or WebM where the browser has no H.264. Throws where it has neither. */
+export async function saveFilm(canvas: HTMLCanvasElement, reel: Reel): Promise<void> {
   const file = document.createElement("canvas");
-  compose(file, canvas, film.picture(0), WIDTH);
-  const recorder = new MediaRecorder(file.captureStream(), { mimeType: type, videoBitsPerSecond: BITS });
-  const parts: Blob[] = [];
-  recorder.ondataavailable = ({ data }) => parts.push(data);
-  const ended = new Promise((done) => (recorder.onstop = done));
-  recorder.start();
-  const begin = performance.now();
-  for (let frame = 0; frame < film.frames && !film.stopped(); ++frame) {
-    compose(file, canvas, film.picture(frame), WIDTH);
-    await until(begin + (1000 * (frame + 1)) / film.perSecond);
+  compose(file, canvas, reel.picture(0), WIDTH);
+  const { width, height } = file;
+  const config = await configOf(width, height, reel.perSecond);
+  const film: Film = { width, height, seconds: [], pictures: [], description: new Uint8Array() };
+  let failure: Error | undefined;
+  const encoder = new VideoEncoder({
+    output: (chunk, about) => {
+      const data = new Uint8Array(chunk.byteLength);
+      chunk.copyTo(data);
+      film.pictures.push({ data, key: chunk.type === "key" });
+      const description = about?.decoderConfig?.description;
+      if (description) film.description = bytesOf(description);
+    },
+    error: (error) => (failure = error),
+  });
+  encoder.configure(config);
+  for (let frame = 0; frame < reel.frames && !reel.stopped() && !failure; ++frame) {
+    compose(file, canvas, reel.picture(frame), WIDTH);
+    const image = new VideoFrame(file, { timestamp: Math.round((1e6 * frame) / reel.perSecond) });
+    encoder.encode(image, { keyFrame: frame % KEY_EVERY === 0 });
+    image.close();
+    do
+      await new Promise((done) => setTimeout(done)); // the page lives on
+    while (encoder.encodeQueueSize > 3 && !failure);
   }
-  const last = performance.now();
-  while (performance.now() < last + 1000 * END) {
-    file.getContext("2d")!.fillRect(0, 0, 0, 0); // the same picture, as a new frame
-    await until(performance.now() + 100);
-  }
-  recorder.stop();
-  await ended;
-  download(new Blob(parts, { type: type.split(";")[0] }), `${film.name}.${ending}`);
+  if (!failure) await encoder.flush();
+  if (failure) throw failure;
+  encoder.close();
+  const last = film.pictures.length - 1;
+  film.seconds = film.pictures.map((_, k) => 1 / reel.perSecond + (k === last ? END : 0));
+  const mp4 = config.codec.startsWith("avc1");
+  const type = mp4 ? "video/mp4" : "video/webm";
+  download(new Blob([mp4 ? mp4Of(film) : webmOf(film)], { type }), `${reel.name}.${mp4 ? "mp4" : "webm"}`);
 }
 
-/** A moment of performance.now(), or the next turn where that has passed. */
-const until = (moment: number) =>
-  new Promise((done) => setTimeout(done, Math.max(0, moment - performance.now())));
+async function configOf(width: number, height: number, framerate: number): Promise<VideoEncoderConfig> {
+  for (const codec of CODECS) {
+    const config: VideoEncoderConfig = { codec, width, height, framerate, bitrate: BITS };
+    if (codec.startsWith("avc1")) config.avc = { format: "avc" };
+    if ((await VideoEncoder.isConfigSupported(config)).supported) return config;
+  }
+  throw new Error("it encodes neither H.264 nor VP8");
+}
+
+function bytesOf(source: AllowSharedBufferSource): Uint8Array {
+  return ArrayBuffer.isView(source)
+    ? joined([new Uint8Array(source.buffer, source.byteOffset, source.byteLength)])
+    : joined([new Uint8Array(source)]);
+}

@@ -2,7 +2,7 @@
 import { fromHash, toHash, View } from "./address";
 import { chainColour, Colouring, colourings, RangeOver, reranged } from "./colouring";
 import { runColour } from "./colours";
-import { filmType, saveFilm } from "./film";
+import { canFilm, saveFilm } from "./film";
 import { onKey } from "./keys";
 import { showForceKey, showLegend } from "./legend";
 import { takePayloads } from "./payload";
@@ -170,7 +170,7 @@ class Page {
     );
     $(".chains").hidden = !this.renderer?.forceScale;
     $(".save").hidden = !this.renderer;
-    film.hidden = !this.renderer || !filmType() || this.run.frames < 2;
+    film.hidden = !this.renderer || !canFilm() || this.run.frames < 2;
     this.ends = {};
     slider.max = String(this.run.frames - 1);
     this.seek(Math.round(share * (this.run.frames - 1)));
@@ -218,7 +218,7 @@ class Page {
   }
 
   private drawNow(): void {
-    if (!this.renderer) return;
+    if (!this.renderer || this.filming) return; // the film draws it, at its own size
     const { colouring } = this;
     this.renderer.draw(this.frame, { colouring, chains: chains.checked, highlight: this.highlight });
     $(".over").hidden = $(".log").hidden = !colouring || colouring.map === "categories";
@@ -248,7 +248,7 @@ class Page {
     this.draw();
   }
 
-  /** Records all frames of this run, as they look now; a second click ends it earlier. */
+  /** A film of all frames of this run, as they look now; a second click ends it earlier. */
   private async film(): Promise<void> {
     if (this.filming) {
       this.filming = false;
@@ -258,7 +258,8 @@ class Page {
     this.filming = true;
     film.textContent = "stop";
     const [run, back] = [this.shown, this.frame];
-    await saveFilm($<HTMLCanvasElement>("canvas"), {
+    say("");
+    const made = saveFilm($<HTMLCanvasElement>("canvas"), {
       frames: this.run.frames,
       perSecond: this.perSecond,
       picture: (frame) => {
@@ -268,6 +269,7 @@ class Page {
       name: this.run.name.replaceAll("/", "-"),
       stopped: () => !this.filming || this.shown !== run,
     });
+    await made.catch((error: Error) => say(`This browser could not make the film: ${error.message}.`));
     this.filming = false;
     film.textContent = "save film";
     if (this.shown === run) this.seek(back);
@@ -291,7 +293,7 @@ class Page {
 
 function say(words: string): void {
   $(".message").textContent = words;
-  $(".message").hidden = false;
+  $(".message").hidden = words === "";
 }
 
 takePayloads()

@@ -49,6 +49,7 @@ class Plot {
     this.log.type = "checkbox";
     this.log.addEventListener("change", () => this.choose());
     const log = document.createElement("label");
+    log.className = "log";
     log.title = "Vertical axis over powers of ten";
     log.append(this.log, " log");
     caption.append(y, " over ", x, log, this.reading);
@@ -139,6 +140,7 @@ class Plot {
       mode: 2,
       legend: { show: false },
       cursor: { show: false },
+      hooks: { draw: [() => this.mark(this.shown, this.frame)] }, // its scales are known then
       padding: [10, 14, 0, 0],
       scales: {
         x: { time: false, range: padded },

@@ -2,9 +2,11 @@
 
 Exit code 77, for CTest's "skipped", where there is no Chromium or no Python package to read pictures and snapshots."""
 
+import base64
 import shutil
 import subprocess
 import sys
+import time
 import unittest
 from pathlib import Path
 
@@ -238,6 +240,124 @@ class Page(BrowserTest):
         middle = picture[picture.shape[0] // 3:picture.shape[0] // 2, 500:1500]
         self.assertGreater(middle.std(axis=(0, 1)).max(), 20)  # the packing, not an empty canvas
         self.assertGreater((np.ptp(picture[-100:, 1400:], axis=2) > 60).mean(), 0.05)  # the scale at the right
+
+    def choose(self, selector, value):
+        self.browser.run(f"(s => {{ s.value = '{value}'; s.dispatchEvent(new Event('change')); }})"
+                         f"(document.querySelector('{selector}'))")
+
+    def address(self):
+        """What stands in the address a moment after the last change."""
+        time.sleep(0.5)
+        return dict(part.split("=") for part in self.browser.run("location.hash.slice(1)").split("&") if part)
+
+    def test_the_address_keeps_what_is_shown(self):
+        """What one reader has chosen, another sees who gets the address; nothing stands there for the opening view."""
+        self.open("both.html")
+        self.assertEqual(self.address(), {})
+        self.browser.press("Home", 36)
+        self.browser.press("ArrowRight", 39)
+        self.choose(".colouring", "J")
+        self.choose(".over", "ends")
+        self.browser.run("document.querySelector('.chains input').click()")
+        self.browser.run("document.querySelector('.choices .log input').click()")
+        self.browser.run("document.querySelector('figcaption .log input').click()")
+        address = self.address()
+        self.assertEqual({name: address[name] for name in ("frame", "colour", "over", "log", "chains")},
+                         {"frame": "1", "colour": "J", "over": "ends", "log": "1", "chains": "0"})
+        self.assertEqual(address["plots"].split(";")[0], "strain,stress_top,log")
+        before, link = self.pixels("linked", None), self.browser.run("location.href")
+        self.browser.call("Page.navigate", url="about:blank")
+        self.browser.call("Page.navigate", url=link)
+        self.browser.wait("document.body && document.body.dataset.drawn === '1'")
+        self.assertEqual(self.address(), address)
+        self.assertLess((np.abs(self.pixels("linked again", None) - before).max(axis=2) > 20).mean(), 1e-3)
+
+    def test_what_cannot_be_in_an_address_is_left_at_the_opening(self):
+        self.browser.call("Page.navigate", url="about:blank")
+        page = f"file://{self.folder.resolve()}/compaction-mpm/run/report.html"
+        self.browser.call("Page.navigate", url=f"{page}#frame=99&run=7&colour=nothing&low=x&plots=strain,nothing;%00")
+        self.browser.wait("document.body && document.body.dataset.drawn !== undefined")
+        self.settle()
+        self.assertEqual((self.frame(), self.browser.errors), (10, []))
+        self.browser.run("location.hash = '#frame=3'")
+        self.browser.wait("document.body.dataset.frame === '3'")
+
+    def test_colours_over_powers_of_ten_part_small_values(self):
+        """On a logarithmic scale a value a tenth of the largest is a third of the way down: the colours say so."""
+        self.open()
+        self.browser.press("End", 35)
+        self.choose(".colouring", "pressure")
+        self.browser.run("document.querySelector('.choices .log input').click()")
+        self.pixels("log colours")
+        number = {"Pa": 1, "kPa": 1e3, "MPa": 1e6}
+        unit = number[self.browser.run("document.querySelector('.legend span').textContent").split("[")[1].rstrip("]")]
+        middle = float(self.browser.run("document.querySelector('.ticks span').textContent")) * unit
+        low, high = (float(end) * unit for end in self.browser.run(
+            "[...document.querySelectorAll('.ticks input')].map(i => i.value.replace('−', '-'))"))
+        self.assertAlmostEqual(middle / (low * high) ** 0.5, 1, delta=0.01)
+        self.assertGreater(high / low, 2)
+
+    def test_a_logarithmic_curve_rises_by_equal_steps_for_equal_factors(self):
+        self.open()
+        plot = "document.querySelectorAll('figure')[0]"
+        self.browser.run(f"{plot}.querySelector('.log input').click()")
+        self.pixels("log curve")
+        places = {}
+        for key, code in (("End", 35), ("ArrowLeft", 37), ("ArrowLeft", 37)):
+            self.browser.press(key, code)
+            value, unit = self.browser.run(f"{plot}.querySelector('output').textContent").split(" at ")[0].split()
+            places[float(value) * {"Pa": 1, "kPa": 1e3, "MPa": 1e6}[unit]] = self.browser.run(DOT.format(0) + ".y")
+        (a, b, c) = sorted(places)
+        ratio = np.log(c / b) / np.log(b / a)
+        self.assertAlmostEqual((places[b] - places[c]) / (places[a] - places[b]) / ratio, 1, delta=0.15)
+
+    def look_at_film(self, film):
+        """Width, height, length [s], and which share of the picture is another at the end: by Chromium's own player."""
+        data = base64.b64encode(film.read_bytes()).decode()
+        kind = {".mp4": "video/mp4", ".webm": "video/webm"}[film.suffix]
+        self.browser.call("Page.navigate", url="about:blank")  # a page from the disk may not play what it has made
+        return self.browser.run(f"""(async () => {{
+          const video = document.createElement('video');
+          video.muted = true;
+          const bytes = Uint8Array.from(atob('{data}'), letter => letter.charCodeAt(0));
+          video.src = URL.createObjectURL(new Blob([bytes], {{type: '{kind}'}}));
+          await new Promise((done, failed) => {{ video.onloadeddata = done; video.onerror = () => failed(video.error); }});
+          const pen = Object.assign(document.createElement('canvas'), {{width: 128, height: 128}})
+            .getContext('2d', {{willReadFrequently: true}});
+          const look = () => {{ pen.drawImage(video, 0, 0, 128, 128); return [...pen.getImageData(0, 0, 128, 128).data]; }};
+          const until = async (seen) => {{ for (let k = 0; k < 100 && !seen(look()); ++k) await new Promise(d => setTimeout(d, 100)); }};
+          await until(now => now[3] > 0);  // a player says that it has a picture before it shows it
+          const first = look();
+          await new Promise(done => {{ video.onseeked = done; video.currentTime = video.duration - 0.5; }});
+          await until(now => now.some((v, k) => Math.abs(v - first[k]) > 40));
+          const last = look();
+          return [video.videoWidth, video.videoHeight, video.duration,
+                  first.filter((v, k) => Math.abs(v - last[k]) > 40).length / first.length];
+        }})()""")
+
+    def test_a_film_of_all_frames_is_saved_in_what_the_browser_encodes(self):
+        for codec, suffix in (("any", None), ("vp8", ".webm")):
+            with self.subTest(codec):
+                self.open()
+                if not self.browser.run("typeof VideoEncoder !== 'undefined'"):
+                    self.skipTest("no VideoEncoder")
+                if suffix:
+                    self.browser.run(f"void (VideoEncoder.isConfigSupported = async c => ({{supported: c.codec === '{codec}'}}))")
+                films = self.folder / f"films-{codec}"
+                self.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(films))
+                self.browser.run("document.querySelector('.film').click()")
+                self.browser.until(lambda: any(film.stat().st_size > 5000 for film in films.glob("run.*[4m]")), 240)
+                self.browser.wait("document.querySelector('.film').textContent === 'save film'")
+                self.assertEqual((self.frame(), self.browser.errors), (10, []))  # where it was, without a complaint
+                (film,) = films.glob("run.*")
+                self.assertIn(film.suffix, (suffix,) if suffix else (".mp4", ".webm"))
+                if PICTURES:
+                    shutil.copy(film, PICTURES)
+                width, height, seconds, changed = self.look_at_film(film)
+                self.browser.errors.clear()
+                self.assertEqual((width, height % 2), (1280, 0))
+                self.assertAlmostEqual(seconds, 11 / 5 + 1, delta=0.02)  # 11 frames, 5 a second, the last a second longer
+                self.assertGreater(changed, 0.03)
 
     def test_summary_is_that_of_the_case(self):
         self.open()

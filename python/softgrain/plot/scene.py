@@ -48,6 +48,8 @@ def draw_walls(panel, snapshot, thickness):
     edges = picture.cell_edges(snapshot)
     panel.add(LineCollection(edges, linewidths=0.6, linestyles="dashed", colors=INK, transform=panel.transform))
     for start, end in picture.walls(snapshot):
+        if np.array_equal(start, end):
+            continue  # an open top
         normal = np.array([start[1] - end[1], end[0] - start[0]]) / np.hypot(*(end - start))
         away = normal * np.sign(normal @ (start - centre))
         bars.append([start, end, end + thickness * away, start + thickness * away])

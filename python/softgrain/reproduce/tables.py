@@ -7,19 +7,20 @@ import numpy as np
 from .. import measure
 from .single_grain import reduced_force
 
-COLUMNS = ("strain", "phi", "phi_deformed", "z", "stress", "stress_top", "stress_bottom")
-HEADER = ("seed", "strain", "phi_0", "phi", "z", "stress[Pa]", "stress_top[Pa]", "stress_bottom[Pa]")
-ROWS = 120  # at most, evenly
+COLUMNS = ("strain", "phi", "phi_deformed", "z", "z_no_rattlers", "z_with_walls", "stress", "stress_top", "stress_bottom")
+HEADER = ("seed", "strain", "phi_0", "phi", "z", "z_no_rattlers", "z_with_walls", "stress[Pa]", "stress_top[Pa]", "stress_bottom[Pa]")
+ROWS = 80  # at most, evenly, of a packing
 
 
 def write(results, folder):
-    """packing_MODEL_muMU.csv for each kind of packing, grain_*.csv for the single grains."""
-    for (model, friction), curves in results.packings.items():
-        rows = [(seed, *(f"{getattr(curve, name)[k]:.6g}" for name in COLUMNS))
+    """WAY_MODEL_muMU.csv for each kind of packing, grain_*.csv for the single grains."""
+    for (way, model, friction), curves in results.packings.items():
+        rows = [(seed, *(f"{getattr(curve, name)[k]:.5g}" for name in COLUMNS))
                 for seed, curve in enumerate(curves, 1) for k in _some(curve.strain.size)]
-        _write(folder / f"packing_{model}_mu{friction:g}.csv", HEADER, rows)
-    for name, run in results.grains.items():
-        if "mpm" in run.case and run.case["experiment"]["model"] == "mpm":
+        _write(folder / f"{way}_{model}_mu{friction:g}.csv", HEADER, rows)
+    for name, runs in results.grains.items():
+        run = runs[0]
+        if run.elastic:
             header, columns = ("strain", "F/(E* R)"), reduced_force(run)
         else:
             header, columns = ("strain", "stress[Pa]"), (run.series["strain"], measure.vertical_stress(run.series))

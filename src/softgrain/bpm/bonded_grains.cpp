@@ -58,6 +58,7 @@ BondedGrains::BondedGrains(BondedGrainsSetup setup)
 }
 
 StepReport BondedGrains::step(Box<2>& box, double dt) {
+  dynamics_.particles.walls = box.walls;
   for (std::size_t w = 0; w < box.walls.size(); ++w)
     set_wall_velocity(dynamics_.particles, static_cast<int>(w), box.walls[w].velocity);
   dynamics_.particles.presses = box.presses;
@@ -127,13 +128,15 @@ double BondedGrains::solid_fraction(const Box<2>& box) const {
   return std::numbers::pi * squares / box.volume();
 }
 
-std::pair<double, double> BondedGrains::extent() const {
+std::pair<double, double> BondedGrains::extent(int axis) const {
   const auto& p = dynamics_.particles;
-  return {-support(p.position, p.radius, {-1, 0}), support(p.position, p.radius, {1, 0})};
+  Vec<2> along;
+  along[axis] = 1;
+  return {-support(p.position, p.radius, Vec<2>{} - along), support(p.position, p.radius, along)};
 }
 
 std::pair<double, double> BondedGrains::reach() const {
-  const auto [low, high] = extent();
+  const auto [low, high] = extent(0);
   const double reach = 1.1 * grain_radius_.front() + (high - low) / 2;
   return {-reach, reach};
 }

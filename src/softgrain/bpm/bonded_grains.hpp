@@ -65,7 +65,7 @@ class BondedGrains final : public Model {
   /// Contacts between grains, and with walls.
   std::vector<ContactPoint> contacts() const override { return contact_points(dynamics_, impulse_time_); }
   Outlines outlines() const override { return outlines_of(dynamics_); }
-  std::pair<double, double> extent() const override;
+  std::pair<double, double> extent(int axis) const override;
   Energies energies() const override;
   Numbers numbers(const Box<2>& box) const override;
   Scene scene(const Box<2>& box) const override;

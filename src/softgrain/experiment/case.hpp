@@ -35,6 +35,10 @@ enum class Integrator {
   symplectic_euler,  ///< explicit
 };
 enum class BoxEnd { walls, periodic };  ///< what ends a box along an axis
+enum class Places {
+  random,
+  pour,  ///< as they lie after they have fallen into the box
+};
 enum class Formulation { total_lagrangian, updated_lagrangian };
 
 /// One experiment, complete: what a case file says, in SI units, with every default filled in. Per metre of
@@ -132,6 +136,7 @@ struct Case {
 
   struct Sample : Sizes {
     std::int64_t seed = 1;
+    Places places = Places::random;     ///< of grains that are not placed one by one
     int grains = 20;                    ///< in a box
     double packing_fraction = 0.7;      ///< of the undeformed grains in the box at the start
     double aspect = 1;                  ///< width over height of the box at the start
@@ -163,6 +168,7 @@ struct Case {
     BoxEnd x = BoxEnd::walls, y = BoxEnd::walls;
     double width = 0, height = 0;         ///< of placed grains [m]; 0: as far as the grains reach
     double gravity_x = 0, gravity_y = 0;  ///< [m/s^2]
+    bool open_top = false;                ///< no top wall until a stage moves it
   } box;
 
   struct Output {

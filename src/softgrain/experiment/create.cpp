@@ -9,6 +9,10 @@ namespace {
 
 template <int Dim>
 std::unique_ptr<SimulationOf<Dim>> with_loading(const Case& c, PlacedModelOf<Dim> placed) {
+  if (is_in_a_box(c) && c.box.open_top) {
+    placed.box.open_top = placed.box.walls[top_wall].open = true;
+    follow_surface(*placed.model, placed.box);
+  }
   LoadingOf<Dim> loading(stages_of(c), frame_of(c), placed.box);
   return std::make_unique<SimulationOf<Dim>>(std::move(placed.model), std::move(placed.box),
                                              std::move(loading), placed.time_step);

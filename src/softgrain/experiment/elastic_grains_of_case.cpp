@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/solid_case.hpp"
@@ -18,9 +19,6 @@ namespace {
 
 /// Of an explicit step: the mesh's own vibrations are damped.
 constexpr double damping_share = 0.5;
-
-/// Of an implicit step: the walls come together by this share of the smallest radius, at most.
-constexpr double way_share = 0.01;
 
 AnyLaw law_of(const Case& c) { return make_law(c.mpm.law, c.mpm.material); }
 
@@ -99,40 +97,50 @@ double tolerance_of(const Case& c, const SoftGrains& grains, double height) {
   return std::min(c.mpm.tolerance, share * kept / grains.largest_wave_modulus() * height / grains.radius(0));
 }
 
+/// Of a lattice [m]: a grain, the smallest in a box, has as many points as with the other formulation.
 double cell_of(const Case& c) {
-  return c.grain.radius * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;  // 14 cells^2 points, 4 to a cell
+  const double radius = !is_in_a_box(c)           ? c.grain.radius
+                        : c.sample.placed.empty() ? diameter_law(c.sample).least() / 2
+                                                  : c.sample.smallest_diameter / 2;
+  return radius * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;  // 14 cells^2 points, 4 to a cell
 }
 
 bool is_lattice(const Case& c) {
   return is_elastic(c) && c.mpm.formulation == Formulation::updated_lagrangian;
 }
 
-/// A cell has the size that gives both formulations 14 cells^2 points.
-PlacedModel lattice_grain_of(const Case& c) {
-  require(!is_in_a_box(c), "mpm.formulation 'updated_lagrangian' needs experiment.loading 'diametral'");
+/// Grains of points on one lattice: that of the case between two walls, or a sample in a box.
+PlacedModel lattice_grains_of(const Case& c) {
   const double cell = cell_of(c);
-  PointGrain grain = disk_of_points(c.grain.radius, {}, cell, 8 * c.mpm.cells);
-  double reach = 0;  // the outline is symmetric about both axes
-  for (const Vec<2>& x : grain.outline) reach = std::max(reach, x[1]);
-  Box<2> box = walls_at(-reach, reach);
-  UpdatedLagrangianDynamics dynamics({std::move(grain)}, box, law_of(c), c.grain.density,
+  std::vector<PointGrain> grains;
+  Box<2> box;
+  if (is_in_a_box(c)) {
+    const BoxSample sample = sample_box(c);
+    for (const PlacedGrain& grain : sample.grains)
+      grains.push_back(disk_of_points(grain.radius, grain.centre, cell, 8 * c.mpm.cells));
+    box = box_of(sample);
+    require(c.kinds.empty() && box.bounded(0) && box.bounded(1),
+            "mpm.formulation 'updated_lagrangian' takes grains of one material between walls");
+  } else {
+    grains.push_back(disk_of_points(c.grain.radius, {}, cell, 8 * c.mpm.cells));
+    double reach = 0;  // the outline is symmetric about both axes
+    for (const Vec<2>& x : grains.front().outline) reach = std::max(reach, x[1]);
+    box = walls_at(-reach, reach);
+  }
+  UpdatedLagrangianDynamics dynamics(std::move(grains), box, law_of(c), c.grain.density,
                                      {.shape = c.mpm.shape_functions,
                                       .contact_on = c.mpm.contact_on,
                                       .cell = cell,
                                       .friction = c.contact.friction,
                                       .wall_friction = c.contact.wall_friction,
+                                      .gravity = gravity_of(c),
                                       .damping = c.mpm.damping});
   const double dt = c.time.step > 0 ? c.time.step : stable_time_step(dynamics.law, dynamics.density, cell);
   return {std::make_unique<LatticeGrains>(std::move(dynamics)), std::move(box), dt};
 }
 
-/// Step of so much of the way of the walls.
-double longest_way(const Case& c, double smallest_radius) {
-  return way_share * smallest_radius / c.loading.wall_velocity;
-}
-
 PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double smallest_radius) {
-  const double dt = c.time.step > 0 ? c.time.step : longest_way(c, smallest_radius);
+  const double dt = c.time.step > 0 ? c.time.step : implicit_time_step(c, smallest_radius);
   const ImplicitOptions options{.tolerance = tolerance_of(c, grains, box.height()),
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
@@ -146,7 +154,7 @@ PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double
 PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box, double smallest_radius) {
   const double dt = c.time.step > 0             ? c.time.step
                     : grains.fastest_wave() > 0 ? stable_time_step(grains)
-                                                : longest_way(c, smallest_radius);
+                                                : implicit_time_step(c, smallest_radius);
   const ExplicitOptions options{.damping_share = damping_share,
                                 .friction = c.contact.friction,
                                 .wall_friction = c.contact.wall_friction,
@@ -188,7 +196,7 @@ void check_time_step(const Case& c) {
 
 PlacedModel elastic_grains_of(const Case& c) {
   check_time_step(c);
-  if (is_lattice(c)) return lattice_grain_of(c);
+  if (is_lattice(c)) return lattice_grains_of(c);
   const std::vector<std::shared_ptr<const Topology>> shapes = shapes_of(c);
   std::vector<GrainPlacement> placed;
   Box<2> box;

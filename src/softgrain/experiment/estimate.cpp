@@ -1,5 +1,6 @@
 #include "softgrain/experiment/estimate.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -102,12 +103,19 @@ double first_packing_fraction(const Case& c) {
   return c.sample.packing_fraction * (filled / circles);
 }
 
+double implicit_time_step(const Case& c, double R) {
+  constexpr double way_share = 0.01;
+  const double step = way_share * R / c.loading.wall_velocity;
+  const double p = stress_beside_motion(c);
+  return p > 0 ? std::min(step, R * std::sqrt(c.grain.density / p)) : step;
+}
+
 double first_time_step(const Case& c) {
   if (is_bonded(c)) return c.time.step > 0 ? c.time.step : stable_bond_step(c);
   if (c.time.step > 0) return c.time.step;
   if (is_in_space(c))
     return 0.36 * smallest_radius(c) / c.mpm.cells / std::sqrt(wave_modulus(c) / c.grain.density);
-  if (is_implicit(c) || is_rigid(c)) return 0.01 * smallest_radius(c) / c.loading.wall_velocity;
+  if (is_implicit(c) || is_rigid(c)) return implicit_time_step(c, smallest_radius(c));
   if (!c.kinds.empty()) return least_of_kinds(c, first_time_step);
   // a share of the time in which a pressure wave crosses a cell; pi R^2 = 3.5 cells^2 h^2
   const double cell = smallest_radius(c) * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;
@@ -130,6 +138,10 @@ bool remembers(const Case& c) {
 
 /// Of all grains that are not bonded.
 double points(const Case& c) {
+  if (is_updated_lagrangian(c) && is_in_a_box(c)) {  // on one lattice, the cell that of the smallest grain
+    const double R = smallest_radius(c);
+    return points_of_grain(c) * grain_area(c) / (std::numbers::pi * R * R);
+  }
   return sum_of_kinds(c, [](const Case& kind) { return grains(kind) * points_of_grain(kind); });
 }
 

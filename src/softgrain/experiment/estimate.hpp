@@ -23,6 +23,9 @@ int points_of_grain(const Case& the_case);
 /// The time step with which a run of the case begins [s], and the height of its box [m], both for grains of
 /// mean size.
 double first_time_step(const Case& the_case);
+/// Of implicit steps, and of rigid grains alone [s], smallest_radius [m]: walls go 0.01 of it, and where some
+/// keep a stress p while others move, grains have the time that they take to rearrange, R sqrt(rho/p).
+double implicit_time_step(const Case& the_case, double smallest_radius);
 double box_height(const Case& the_case);
 
 /// Phi_0 at the start. sample.packing_fraction is that of the circles of the grains' diameters, of which an

@@ -4,6 +4,9 @@
 #include <limits>
 #include <numbers>
 
+#include "softgrain/core/error.hpp"
+#include "softgrain/experiment/pour.hpp"
+
 namespace softgrain {
 namespace {
 
@@ -27,6 +30,20 @@ BoxSample sample_box(const Case& c) {
 }
 
 BoxSampleOf<3> sample_solid_box(const Case& c) { return sample_solid_box(options_of(c)); }
+
+bool is_to_pour(const Case& c) {
+  return is_in_a_box(c) && c.sample.places == Places::pour && c.sample.placed.empty();
+}
+
+Case with_poured_grains(Case c) {
+  require(!is_in_space(c), "not yet: grains are poured in the plane only");
+  BoxSample sample = pour(
+      {.grains = options_of(c), .friction = c.contact.friction, .wall_friction = c.contact.wall_friction});
+  c.sample.placed = std::move(sample.grains);
+  c.box.width = sample.width;
+  c.box.height = sample.height;
+  return complete_sample(std::move(c));
+}
 
 DiameterLaw diameter_law(const Case::Sizes& sample, int dimension) {
   DiameterLaw law{.law = sample.sizes,

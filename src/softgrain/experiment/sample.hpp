@@ -9,6 +9,12 @@ namespace softgrain {
 BoxSample sample_box(const Case& the_case);
 BoxSampleOf<3> sample_solid_box(const Case& the_case);
 
+/// Are its grains still to be poured into the box?
+bool is_to_pour(const Case& the_case);
+/// The case with its grains in the places where they lie once poured, and the box round them, complete.
+/// Raises UsageError as `pour` does, and in space.
+Case with_poured_grains(Case the_case);
+
 /// The law of the diameters of a case; shares of area, in space of volume, become numbers.
 DiameterLaw diameter_law(const Case::Sizes& sizes, int dimension = 2);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <tuple>
 #include <type_traits>
 
@@ -37,6 +38,14 @@ void add_faces(const Box<3>& box, const std::pair<double, double>& reach, Scene&
 }
 
 }  // namespace
+
+template <int Dim>
+void follow_surface(const ModelOf<Dim>& model, Box<Dim>& box) {
+  constexpr double above = 0.01;  // so that a wall that closes there meets no grain at first
+  const std::vector<double> radius = model.radii();
+  const double mean = std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(radius.size());
+  box.walls[top_wall].point[Dim - 1] = model.extent(Dim - 1).second + above * mean;
+}
 
 template <int Dim>
 SimulationOf<Dim>::SimulationOf(std::unique_ptr<ModelOf<Dim>> model, Box<Dim> box, LoadingOf<Dim> loading,
@@ -77,6 +86,7 @@ StepReport SimulationOf<Dim>::step() {
   if (!(L == before)) model_->follow(L - before);
   const StepReport report = model_->step(box_, dt_);
   ++step_;
+  if (box_.open_top && box_.walls[top_wall].open) follow_surface(*model_, box_);
   if (box_.cell.any()) {
     box_.shear += dt_ * L(0, 1);
     box_.moment =
@@ -142,7 +152,7 @@ Observation SimulationOf<Dim>::observe() const {
     now.side_face = box_.face(0);
     now.packing = packing();
   } else {
-    const auto [low, high] = model_->extent();
+    const auto [low, high] = model_->extent(0);
     now.width = high - low;
     now.face = std::numbers::pi / 4 * now.width * now.width;
   }
@@ -242,7 +252,8 @@ Scene SimulationOf<Dim>::scene() const {
     else if (!box_.repeats(0))
       std::tie(left, right) = model_->reach();
     scene.wall_segments = {left,        low,  right,        low,
-                           left + tilt, high, right + tilt, high};  // in the order of BoxWall
+                           left + tilt, high, right + tilt, high};                  // in the order of BoxWall
+    if (box_.open_top && box_.walls[top_wall].open) scene.wall_segments[6] = left;  // nothing to see
     if (box_.faces() == 4)
       scene.wall_segments.insert(scene.wall_segments.end(),
                                  {left, low, left + tilt, high, right, low, right + tilt, high});
@@ -288,6 +299,8 @@ void SimulationOf<Dim>::begin_from(const Checkpoint& checkpoint) {
   begin_row();
 }
 
+template void follow_surface<2>(const ModelOf<2>&, Box<2>&);
+template void follow_surface<3>(const ModelOf<3>&, Box<3>&);
 template class SimulationOf<2>;
 template class SimulationOf<3>;
 

@@ -70,6 +70,11 @@ class AnySimulation {
   AnySimulation& operator=(AnySimulation&&) = default;
 };
 
+/// Lifts or lowers an open top to the surface of the grains: a hundredth of their mean radius above their
+/// highest point.
+template <int Dim>
+void follow_surface(const ModelOf<Dim>& model, Box<Dim>& box);
+
 /// An experiment, advanced step by step: grains (a model), a box, and a loading.
 template <int Dim>
 class SimulationOf final : public AnySimulation {

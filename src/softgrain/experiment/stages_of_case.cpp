@@ -20,9 +20,6 @@ Drive keeps(Part part, double stress) { return {.part = part, .control = Control
 
 Stage rest(double time) { return {.name = "rest", .until = {.time = time}}; }
 
-/// Of top and bottom wall: side walls of a biaxial path, which make room for a box that flattens.
-constexpr double side_speed = 5;
-
 /// What presses along y: the top wall, or the cell.
 Part pressing(const Case& c) { return repeats_of(c)[1] ? Part::yy : Part::top; }
 
@@ -95,7 +92,6 @@ std::vector<Stage> biaxial(const Case& c) {
   Stage compress{.name = "compress",
                  .drives = {at_velocity(Part::yy, v), keeps(Part::xx, confining)},
                  .key = "loading.confining_stress"};
-  compress.drives.back().speed = side_speed * v;
   compress.until.strain[0] = c.loading.max_strain;
   if (c.loading.max_stress > 0)
     compress.exits = {{.stress = c.loading.max_stress, .key = "loading.max_stress"}};
@@ -236,6 +232,17 @@ double least_kept_stress(const Case& c) {
     for (const Drive& drive : stage.drives)
       if (drive.control == Control::stress) least = least == 0 ? drive.value : std::min(least, drive.value);
   return least;
+}
+
+double stress_beside_motion(const Case& c) {
+  double largest = 0;
+  for (const Stage& stage : stages_of(c)) {
+    const auto is_given = [](const Drive& drive) { return drive.is_given() && drive.value != 0; };
+    if (std::none_of(stage.drives.begin(), stage.drives.end(), is_given)) continue;
+    for (const Drive& drive : stage.drives)
+      if (drive.control == Control::stress) largest = std::max(largest, drive.value);
+  }
+  return largest;
 }
 
 double largest_named_stress(const Case& c) {

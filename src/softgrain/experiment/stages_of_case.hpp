@@ -27,6 +27,8 @@ void check_loading(const Case& the_case);
 
 /// The least stress that walls keep [Pa]; 0: none do.
 double least_kept_stress(const Case& the_case);
+/// The largest stress that walls keep while others are moved [Pa]; 0: none do.
+double stress_beside_motion(const Case& the_case);
 /// The largest stress that the stages name [Pa]; 0: they name none.
 double largest_named_stress(const Case& the_case);
 /// Speed of the walls, of the fastest stage of one's own in a box of this height [m/s].

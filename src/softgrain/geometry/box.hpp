@@ -23,6 +23,7 @@ struct Box {
   std::vector<Press> presses;     ///< that move some of the walls; no wall belongs to two
   PeriodicCell<Dim> cell;         ///< along the axes without walls
   double shear = 0;               ///< gamma, the integral of L_xy dt
+  bool open_top = false;          ///< the top wall is open until a stage moves it
   /// sum_c P_c (x) l_c of the last step [N s m in 2D]: P of grain a on grain b, l the way from the centre of
   /// a to that of b, or to a wall; of a cell that repeats
   Mat<Dim> moment{};

@@ -9,6 +9,7 @@ struct Wall {
   Vec<Dim> point;     ///< [m] on the surface; moves with the velocity
   Vec<Dim> normal;    ///< unit, into the material
   Vec<Dim> velocity;  ///< [m/s] prescribed
+  bool open = false;  ///< it is not there: no grain meets it
 };
 
 }  // namespace softgrain

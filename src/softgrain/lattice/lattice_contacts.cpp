@@ -123,15 +123,19 @@ void add_node_contacts(const Lattice& lattice, int grains, std::span<const Wall<
       if (lattice.mass[i] <= least_mass) return;
       for (int w = 0; w < static_cast<int>(walls.size()); ++w)
         if (dot(x - walls[w].point, walls[w].normal) < wall_reach)
-          contacts.add({.grain = g, .wall = w, .normal = walls[w].normal, .wall_velocity = walls[w].velocity},
+          contacts.add({.grain = g,
+                        .wall = w,
+                        .normal = walls[w].normal,
+                        .wall_velocity = walls[w].velocity,
+                        .node = x},
                        std::vector<NodeWeight>{{i, 1}});
     });
     for (int other = 0; other < g; ++other)
-      lattice.for_each_common_node(g, other, [&](int i, int j, const Vec<2>&) {
+      lattice.for_each_common_node(g, other, [&](int i, int j, const Vec<2>& x) {
         if (lattice.mass[i] <= least_mass || lattice.mass[j] <= least_mass) return;
         const Vec<2> n = lattice.inward[i] - lattice.inward[j];
         if (norm(n) > 0)
-          contacts.add({.grain = g, .other = other, .normal = (1 / norm(n)) * n},
+          contacts.add({.grain = g, .other = other, .normal = (1 / norm(n)) * n, .node = x},
                        std::vector<NodeWeight>{{i, 1}, {j, -1}});
       });
   }

@@ -17,6 +17,7 @@ struct LatticeContact {
   Vec<2> normal{};         ///< unit, from the master to the slave
   double gap_rate = 0;     ///< added to u_n [m/s]: (gap of the free motion)/dt - n . u_free; 0 on nodes
   Vec<2> wall_velocity{};  ///< [m/s]
+  Vec<2> node{};           ///< where the node is [m]; of a contact on nodes
 };
 
 /// Contacts of grains on a lattice as a ContactSystem, whether they meet on nodes or on outlines

@@ -20,6 +20,16 @@ std::vector<Vec<4>> components(std::span<const Mat<2>> tensors) {
   return rows;
 }
 
+template <class T>
+void append(std::vector<T>& all, const std::vector<T>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+/// As many of all as some holds, from `first` on.
+void take(std::vector<Vec<2>>& some, const std::vector<Vec<2>>& all, std::size_t first) {
+  std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(first), some.size(), some.begin());
+}
+
 }  // namespace
 
 StepReport LatticeGrains::step(Box<2>& box, double dt) {
@@ -73,32 +83,33 @@ Outlines LatticeGrains::outlines() const {
   return all;
 }
 
-/// Those on nodes have no place on an outline and are left out.
 std::vector<ContactPoint> LatticeGrains::contacts() const {
   std::vector<ContactPoint> points;
   for (std::size_t c = 0; c < dynamics_.contacts.size(); ++c) {
     const LatticeContact& contact = dynamics_.contacts[c];
-    if (contact.vertex < 0) continue;
     const Vec<2>& n = contact.normal;
     const Vec<2>& p = dynamics_.impulse[c];
+    if (!(p[0] > 0)) continue;
+    const std::vector<Vec<2>>& outline = dynamics_.grains[contact.grain].outline;
     points.push_back({.a = contact.grain,
                       .b = contact.other >= 0 ? contact.other : wall_index(contact.wall),
                       .force = (-1 / impulse_time_) * (p[0] * n + p[1] * perpendicular(n)),
                       .normal = -n,
-                      .position = dynamics_.grains[contact.grain].outline[contact.vertex]});
+                      .position = contact.vertex >= 0 ? outline[contact.vertex] : contact.node});
   }
   return points;
 }
 
-std::pair<double, double> LatticeGrains::extent() const {
+std::pair<double, double> LatticeGrains::extent(int axis) const {
   double least = std::numeric_limits<double>::infinity(), largest = -least;
   for (const PointGrain& grain : dynamics_.grains)
-    for (const Vec<2>& x : grain.outline) least = std::min(least, x[0]), largest = std::max(largest, x[0]);
+    for (const Vec<2>& x : grain.outline)
+      least = std::min(least, x[axis]), largest = std::max(largest, x[axis]);
   return {least, largest};
 }
 
 std::pair<double, double> LatticeGrains::reach() const {
-  const auto [low, high] = extent();
+  const auto [low, high] = extent(0);
   const double margin = 0.1 * (high - low);
   return {low - margin, high + margin};
 }
@@ -190,13 +201,27 @@ void LatticeGrains::set(const Settings& settings) {
 }
 
 void LatticeGrains::visit(StateVisitor& visit) {
-  PointGrain& grain = dynamics_.grains.front();
-  visit({"position", "m", Owner::point, Role::state, "material points"}, grain.position);
-  visit({"velocity", "m/s", Owner::point, Role::state, "theirs"}, grain.velocity);
-  std::vector<Vec<4>> F = components(grain.F);
+  PointGrain all;  // one grain after the other
+  for (const PointGrain& grain : dynamics_.grains) {
+    append(all.position, grain.position);
+    append(all.velocity, grain.velocity);
+    append(all.F, grain.F);
+    append(all.outline, grain.outline);
+  }
+  visit({"position", "m", Owner::point, Role::state, "material points"}, all.position);
+  visit({"velocity", "m/s", Owner::point, Role::state, "theirs"}, all.velocity);
+  std::vector<Vec<4>> F = components(all.F);
   visit({"deformation_gradient", "", Owner::point, Role::state, "F, row by row"}, F);
-  for (std::size_t p = 0; p < F.size(); ++p) grain.F[p] = {F[p].c};
-  visit({"outline", "m", Owner::node, Role::state, "vertices of the outline"}, grain.outline);
+  visit({"outline", "m", Owner::node, Role::state, "vertices of the outline"}, all.outline);
+  std::size_t point = 0, vertex = 0;
+  for (PointGrain& grain : dynamics_.grains) {
+    for (std::size_t p = 0; p < grain.F.size(); ++p) grain.F[p] = {F[point + p].c};
+    take(grain.position, all.position, point);
+    take(grain.velocity, all.velocity, point);
+    take(grain.outline, all.outline, vertex);
+    point += grain.position.size();
+    vertex += grain.outline.size();
+  }
   visit({"impulse_time", "s", Owner::run, Role::start, "the step over which impulses acted"}, impulse_time_);
   visit_work(dynamics_.work, visit);
 }

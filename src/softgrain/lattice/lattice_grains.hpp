@@ -26,7 +26,7 @@ class LatticeGrains final : public Model {
   Bodies bodies() const override;
   std::vector<ContactPoint> contacts() const override;
   Outlines outlines() const override;
-  std::pair<double, double> extent() const override;
+  std::pair<double, double> extent(int axis) const override;
   Energies energies() const override;
   Numbers numbers(const Box<2>& box) const override;
   Scene scene(const Box<2>& box) const override;

@@ -27,6 +27,18 @@ LoadingOf<Dim>::LoadingOf(const std::vector<Stage>& stages, const LoadingFrame& 
 template <int Dim>
 void LoadingOf<Dim>::plan_stages() {
   planned_ = plan(stages_, frame_, travel_start_);
+  closing_stage_ = first_to_move_top();
+}
+
+template <int Dim>
+std::size_t LoadingOf<Dim>::first_to_move_top() const {
+  const auto moves_top = [&](const Drive& drive) {
+    return drive.control != Control::rest && share_in<Dim>(drive.part, frame_.aspect)[top_wall] != 0;
+  };
+  const auto first = std::find_if(stages_.begin(), stages_.end(), [&](const Stage& stage) {
+    return std::any_of(stage.drives.begin(), stage.drives.end(), moves_top);
+  });
+  return static_cast<std::size_t>(first - stages_.begin());
 }
 
 /// The stages that are left, from where the present one began.
@@ -101,6 +113,7 @@ void LoadingOf<Dim>::drive(Box<Dim>& box, const ModelOf<Dim>& model, double time
   for (Wall<Dim>& wall : box.walls) wall.velocity = {};
   box.cell.remap();
   box.cell.rate = {};
+  if (box.open_top) box.walls[top_wall].open = stage_ < closing_stage_;
   if (stage_ >= stages_.size()) return;  // whoever goes on, the walls rest
   const Stage& stage = stage_now();
   if (stage.until.time) last_of_stage_ = time - stage_start_ + 1.5 * dt > *stage.until.time;
@@ -205,12 +218,14 @@ void LoadingOf<Dim>::begin_stage(const Box<Dim>& box, double time) {
   for (int c = 0; c < 3; ++c) length_at_stage_[c] = length(box, c);
   if (!motion_.velocity) plan_rest();
   held_ = {};
-  const OfParts speed = press_speed_, force = press_force_, waiting = press_waiting_;
-  press_speed_ = press_force_ = press_waiting_ = {};
+  const OfParts speed = press_speed_, mean_speed = press_mean_speed_, force = press_force_,
+                waiting = press_waiting_;
+  press_speed_ = press_mean_speed_ = press_force_ = press_waiting_ = {};
   for (const Drive& drive : stage_now().drives) {
     if (drive.control != Control::stress) continue;
     const std::size_t part = number_of(drive.part);
     press_speed_[part] = speed[part];  // others begin at rest
+    press_mean_speed_[part] = mean_speed[part];
     press_waiting_[part] = waiting[part];
     press_force_[part] = force[part];
   }

@@ -94,6 +94,7 @@ class LoadingOf {
   void end_at_strain(const Stage& stage, const Box<Dim>& box, Speeds& speeds, double dt);
   Press press_of(const Drive& drive, const Box<Dim>& box, const ModelOf<Dim>& model, double time,
                  double dt) const;
+  std::size_t first_to_move_top() const;
   bool moves_cell(const Drive& drive, const Box<Dim>& box) const;
   double pressed_length(const Drive& drive, const Box<Dim>& box) const;
   double impulse_of(const Drive& drive, const Box<Dim>& box) const;
@@ -136,6 +137,7 @@ class LoadingOf {
   std::array<double, 3> travel_start_{};  // where the first stage began [m]
 
   std::size_t stage_ = 0;                    // of the coming step
+  std::size_t closing_stage_ = 0;            // that moves the top wall first
   double stage_start_ = 0;                   // [s]
   std::array<double, 3> length_at_stage_{};  // of the box where it began [m]
   int number_ = 0, number_of_last_ = 0;
@@ -150,7 +152,8 @@ class LoadingOf {
       stress_twice_{};         // mean of sigma over 0.1 % of strain at wall_velocity, and its mean [Pa]
   OfParts largest_{};          // so far [Pa]
   OfParts stress_at_stage_{};  // the mean where the stage began [Pa]
-  OfParts press_speed_{}, press_force_{}, press_waiting_{};  // of Press [m/s], [N/m], [s]
+  OfParts press_speed_{}, press_mean_speed_{}, press_force_{},
+      press_waiting_{};  // of Press [m/s], [N/m], [s]
 
   std::array<HeldStress, 4> held_{};  // by drive of the stage
   HeldStress unkept_;                 // of the first that was not kept

@@ -10,6 +10,10 @@ namespace {
 /// The force on a cell is that of the step before: it must not answer within a few steps.
 constexpr double steps_behind = 30;
 
+/// Times the speed of the loading at which walls that keep a stress go at most where others move: grains that
+/// rearrange push them faster than those.
+constexpr double beside_motion = 50;
+
 /// Of the way of a stage: less is no step more.
 constexpr double rounding = 1e-9;
 
@@ -148,15 +152,21 @@ Press LoadingOf<Dim>::press_of(const Drive& drive, const Box<Dim>& box, const Mo
   const double pressed = pressed_length(drive, box);
   const PressBody body = model.press_body(box, axis_in<Dim>(drive.part), (of_cell ? steps_behind : 1) * dt);
   const std::size_t part = number_of(drive.part);
+  const Stage& stage = stage_now();
+  const bool alone = std::none_of(stage.drives.begin(), stage.drives.end(), [](const Drive& other) {
+    return (other.is_given() && other.value != 0) || other.control == Control::strain;
+  });
+  const double most = frame_.wall_velocity * (alone ? 1 : beside_motion);
   std::array<double, 6> of_walls{};
   std::copy(share.begin(), share.end(), of_walls.begin());
   return {.share = of_walls,
           .force = drive.target(time + dt - stage_start_) * pressed,
           .mass = body.mass * pressed,
           .damper = body.damper * pressed,
-          .most = drive.speed > 0 ? drive.speed : frame_.wall_velocity,
+          .most = drive.speed > 0 ? drive.speed : most,
           .speed = press_speed_[part],
           .mean_force = press_force_[part],
+          .mean_speed = press_mean_speed_[part],
           .waiting = press_waiting_[part]};
 }
 
@@ -164,6 +174,7 @@ template <int Dim>
 void LoadingOf<Dim>::keep_press(const Drive& drive, const Press& press) {
   const std::size_t part = number_of(drive.part);
   press_speed_[part] = press.speed;
+  press_mean_speed_[part] = press.mean_speed;
   press_force_[part] = press.mean_force;
   press_waiting_[part] = press.waiting;
 }

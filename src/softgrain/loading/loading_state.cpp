@@ -62,6 +62,7 @@ void LoadingOf<Dim>::visit_stresses(StateVisitor& visit) {
   };
   press("press_speed", "m/s", "of walls that keep a stress: yy, xx, bottom, top, left, right, xy",
         press_speed_);
+  press("press_mean_speed", "m/s", "its mean over ten times the time of the press", press_mean_speed_);
   press("press_mean_force", "N/m", "the mean of what grains press them with", press_force_);
   press("press_waiting", "s", "for how long that has been too small, or too large", press_waiting_);
 }

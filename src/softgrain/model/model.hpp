@@ -120,7 +120,8 @@ class ModelOf {
   virtual BodiesOf<Dim> bodies() const = 0;
   virtual std::vector<ContactPointOf<Dim>> contacts() const = 0;  ///< that carry impulse, of the last step
   virtual OutlinesOf<Dim> outlines() const = 0;
-  virtual std::pair<double, double> extent() const = 0;  ///< least and largest x of the grains [m]
+  /// Least and largest coordinate of the grains along an axis [m].
+  virtual std::pair<double, double> extent(int axis) const = 0;
   virtual Energies energies() const = 0;
   /// What only this model knows, by the names of its columns.
   virtual Numbers numbers(const Box<Dim>& box) const = 0;

@@ -13,6 +13,13 @@
 namespace softgrain {
 namespace {
 
+/// Where the lists have a wall: an open one far away, so that they are stale when it closes.
+template <int Dim>
+Vec<Dim> listed_point(const Wall<Dim>& wall) {
+  constexpr double out_of_reach = 1e9;  // [m]
+  return wall.open ? -out_of_reach * wall.normal : wall.point;
+}
+
 /// How far a body may go before grains that were not close may meet, in units of the skin.
 constexpr double far_share = 4;
 
@@ -125,7 +132,7 @@ std::vector<double> staleness(const NeighbourReference<Dim>& reference,
     moved[g] = displacement_of(reference.between, particles, reference.grains[g]);
   });
   for (std::size_t w = 0; w < reference.wall_point.size(); ++w)
-    moved[grains + w].middle = particles.walls[w].point - reference.wall_point[w];
+    moved[grains + w].middle = listed_point(particles.walls[w]) - reference.wall_point[w];
   double& between = stale[grains];
   if (reference.cell.remaps != particles.cell.remaps) between = 2;  // its images have other numbers
   for (const auto& [g, h, image] : reference.close) {
@@ -142,7 +149,7 @@ void take_between(NeighbourReference<Dim>& reference, const RigidParticles<Dim>&
   reference.between = particles.position;
   reference.cell = particles.cell;
   reference.wall_point.clear();
-  for (const Wall<Dim>& wall : particles.walls) reference.wall_point.push_back(wall.point);
+  for (const Wall<Dim>& wall : particles.walls) reference.wall_point.push_back(listed_point(wall));
   find_close_grains(reference, particles);
 }
 

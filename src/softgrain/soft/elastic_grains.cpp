@@ -42,12 +42,32 @@ void visit_stable_step(StableStep& stable, StateVisitor& visit) {
     throw IoError("the snapshot's arrays 'stable_step', 'until_look' and 'between_looks' cannot be");
 }
 
+/// Deepest overlap over the smallest radius that rigid grains alone do not reach while walls can move on.
+constexpr double jammed_overlap = 0.05;
+
+/// One step. Raises NumericalError where it fails; of rigid grains alone that shows that they are jammed.
+template <class Dynamics>
+SoftStepReport step_unless_jammed(Dynamics& dynamics, double dt) {
+  const NumericalError jammed(
+      "the rigid grains are jammed: walls that go on would push them into one another; end at a stress "
+      "(loading.max_stress), or at a smaller strain or packing fraction");
+  const bool rigid = dynamics.grains.fastest_wave() == 0;
+  try {
+    const SoftStepReport report = dynamics.step(dt);
+    if (rigid && report.overlap_max > jammed_overlap) throw jammed;
+    return report;
+  } catch (const NumericalError&) {
+    if (rigid) throw jammed;
+    throw;
+  }
+}
+
 }  // namespace
 
 template <class Dynamics>
 StepReport ElasticGrains<Dynamics>::step(Box<Dim>& box, double dt) {
   const BoxLoan loan(box, dynamics_.box);
-  const SoftStepReport soft = dynamics_.step(dt);
+  const SoftStepReport soft = step_unless_jammed(dynamics_, dt);
   if constexpr (!std::is_same_v<Dynamics, ImplicitDynamics>)
     if (const int grain = dynamics_.grains.runaway_grain(dynamics_.impulse_time); grain >= 0)
       throw NumericalError(fmt::format(
@@ -73,17 +93,17 @@ std::vector<double> ElasticGrains<Dynamics>::radii() const {
 }
 
 template <class Dynamics>
-std::pair<double, double> ElasticGrains<Dynamics>::extent() const {
+std::pair<double, double> ElasticGrains<Dynamics>::extent(int axis) const {
   std::vector<Vec<Dim>> outline;
   dynamics_.grains.gather_outline(outline);
   double least = std::numeric_limits<double>::infinity(), largest = -least;
-  for (const Vec<Dim>& x : outline) least = std::min(least, x[0]), largest = std::max(largest, x[0]);
+  for (const Vec<Dim>& x : outline) least = std::min(least, x[axis]), largest = std::max(largest, x[axis]);
   return {least, largest};
 }
 
 template <class Dynamics>
 std::pair<double, double> ElasticGrains<Dynamics>::reach() const {
-  const auto [low, high] = extent();
+  const auto [low, high] = extent(0);
   const double margin = 0.1 * (high - low);
   return {low - margin, high + margin};
 }

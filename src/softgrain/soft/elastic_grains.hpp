@@ -37,7 +37,7 @@ class ElasticGrains final : public ModelOf<Dynamics::dimension> {
   BodiesOf<Dim> bodies() const override { return nodes_of(dynamics_.grains); }
   std::vector<ContactPointOf<Dim>> contacts() const override { return contact_points(view()); }
   OutlinesOf<Dim> outlines() const override { return outlines_of(dynamics_.grains); }
-  std::pair<double, double> extent() const override;
+  std::pair<double, double> extent(int axis) const override;
   Energies energies() const override;
   Numbers numbers(const Box<Dim>& box) const override;
   Scene scene(const Box<Dim>&) const override { return soft_scene(view()); }

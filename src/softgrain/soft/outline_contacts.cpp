@@ -152,7 +152,7 @@ void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineSta
     const Vec<2>& x = state.position[v];
     for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
       const double height = dot(x - state.walls[w].point, state.walls[w].normal);
-      if (height > margin + segment_) continue;
+      if (state.walls[w].open || height > margin + segment_) continue;
       if (const OutlineArc* arc = rigid_arc(grains, v)) {
         const OutlineContact contact = rigid_wall_contact(grains, state, on_the_way_, w, v, *arc);
         if (contact.gap < margin) part.contacts.push_back(contact);

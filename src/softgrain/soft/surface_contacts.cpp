@@ -133,6 +133,7 @@ void find_nearest(const Surfaces& surfaces, const CellGrid<3>& grid, double reac
 void add_wall_contacts(const Surfaces& surfaces, SurfaceContact contact, double margin,
                        std::vector<SurfaceContact>& contacts) {
   for (int w = 0; w < static_cast<int>(surfaces.state.walls.size()); ++w) {
+    if (surfaces.state.walls[w].open) continue;
     contact.wall = w;
     contact.normal = surfaces.state.walls[w].normal;
     update_gap(contact, surfaces.state);

@@ -48,7 +48,7 @@ class NoGrains final : public ModelOf<3> {
   BodiesOf<3> bodies() const override { return {}; }
   std::vector<ContactPointOf<3>> contacts() const override { return {}; }
   std::vector<SurfaceMeasure> outlines() const override { return {}; }
-  std::pair<double, double> extent() const override { return {0, 1}; }
+  std::pair<double, double> extent(int /*axis*/) const override { return {0, 1}; }
   Energies energies() const override { return {}; }
   Numbers numbers(const Box<3>&) const override { return {}; }
   Scene scene(const Box<3>&) const override { return {}; }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/experiment/sample.hpp"
 #include "support/simulations.hpp"
 
 using namespace softgrain;
@@ -26,12 +27,43 @@ Case one_grain() {
   return c;
 }
 
+Case box_of_grains() {
+  Case c;
+  c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::mpm};
+  c.sample.grains = 4;
+  c.sample.packing_fraction = 0.6;
+  c.mpm.cells = 3;
+  c.mpm.formulation = Formulation::updated_lagrangian;
+  c.contact.friction = 0.3;
+  c.loading.wall_velocity = 20;
+  c.loading.max_strain = 0.3;
+  return c;
+}
+
+/// A grain above another, that far apart [m]; the lower one stands on the bottom, the top wall is as far from
+/// the upper one as the grains are, the side walls touch none.
+Case two_grains(double gap) {
+  Case c = box_of_grains();
+  c.box.width = 3e-3;
+  c.box.height = 4e-3 + 2 * gap;
+  c.sample.placed = {{.centre = {1.5e-3, 1e-3}, .radius = 1e-3},
+                     {.centre = {1.5e-3, 3e-3 + gap}, .radius = 1e-3}};
+  c.mpm.cells = 4;
+  c.mpm.shape_functions = ShapeFunction::bilinear;
+  c.loading.wall_velocity = 2;
+  c.loading.max_strain = 0.05;
+  return complete_sample(c);
+}
+
 }  // namespace
 
 TEST_CASE("an updated-Lagrangian run that goes on from a checkpoint has the bits of one that never stopped") {
-  for (const ContactOn contact_on : {ContactOn::outline, ContactOn::grid_nodes}) {
+  for (const auto& [given, contact_on] : {std::pair{one_grain(), ContactOn::outline},
+                                          {one_grain(), ContactOn::grid_nodes},
+                                          {box_of_grains(), ContactOn::outline},
+                                          {box_of_grains(), ContactOn::grid_nodes}}) {
     CAPTURE(contact_on);
-    Case c = one_grain();
+    Case c = given;
     c.mpm.contact_on = contact_on;
     const auto whole = create_simulation(c);
     advance(*whole, whole->steps_planned() / 2);
@@ -131,8 +163,47 @@ TEST_CASE(
   CHECK(bottom > 0);
 }
 
-TEST_CASE("the updated Lagrangian takes one grain between walls only") {
-  Case c = one_grain();
-  c.experiment.loading = LoadingPath::compaction;
+TEST_CASE("two grains on a lattice bear the same force as the walls that press them, at every contact") {
+  for (const ContactOn contact_on : {ContactOn::outline, ContactOn::grid_nodes}) {
+    CAPTURE(contact_on);
+    Case c = two_grains(0);
+    c.mpm.contact_on = contact_on;
+    c.loading.hold = 1e-3;
+    c.mpm.damping = 5e3;
+    const auto simulation = create_simulation(c);
+    while (!simulation->finished()) simulation->step();
+    double between = 0, below = 0;
+    for (const ContactPoint& point : simulation->model().contacts()) {
+      if (point.b >= 0) between += std::abs(point.force[1]);
+      if (point.b == wall_index(0)) below += std::abs(point.force[1]);
+      CHECK(point.position[1] < simulation->box().height() * 1.2);
+    }
+    const double pressed = value_of(test::next_row(*simulation), "stress_bottom") * 3e-3;
+    CHECK(between > 0);
+    CHECK(between == doctest::Approx(below).epsilon(0.05));
+    CHECK(below == doctest::Approx(pressed).epsilon(0.05));
+    CHECK(value_of(test::next_row(*simulation), "z") == 1);
+  }
+}
+
+TEST_CASE("grains that meet on nodes push on each other before their outlines meet, others do not") {
+  for (const ContactOn contact_on : {ContactOn::outline, ContactOn::grid_nodes}) {
+    CAPTURE(contact_on);
+    Case c = two_grains(1e-4);  // half a cell
+    c.mpm.contact_on = contact_on;
+    c.loading.max_strain = 0.02;
+    const auto simulation = create_simulation(c);
+    bool met = false;
+    while (!simulation->finished()) {
+      simulation->step();
+      for (const ContactPoint& point : simulation->model().contacts()) met |= point.b >= 0;
+    }
+    CHECK(met == (contact_on == ContactOn::grid_nodes));
+  }
+}
+
+TEST_CASE("the updated Lagrangian takes no cell that repeats") {
+  Case c = box_of_grains();
+  c.box.x = c.box.y = BoxEnd::periodic;
   CHECK_THROWS_AS(create_simulation(c), UsageError);
 }

@@ -96,6 +96,32 @@ class LivePage(BrowserTest):
                     self.assertAlmostEqual(here[number], there[column], delta=TOLERANCE)
                 print(f"{name}: Phi {here['phi']!r} after {steps} steps, {abs(here['phi'] - there['phi']):.1e} off")
 
+    def test_nothing_is_computed_before_a_simulation_has_begun(self):
+        """On a busy machine the worker hears a message long before the next: it must not step what is not there yet."""
+        self.open("grains=5")
+        heard = self.browser.run("""(async () => {
+          const text = (id) => document.getElementById(id).textContent;
+          const packed = Uint8Array.from(atob(text('module')), letter => letter.charCodeAt(0));
+          const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
+          const bytes = await new Response(stream).arrayBuffer();
+          const worker = new Worker(URL.createObjectURL(new Blob([text('solver')], {type: 'text/javascript'})));
+          const heard = [];
+          worker.onmessage = ({data}) => heard.push(data.words ?? data.kind);
+          worker.onerror = (event) => heard.push(event.message);
+          const a_while = () => new Promise(done => setTimeout(done, 200));
+          const until = async (words) => { while (!heard.includes(words) && heard.length < 4) await a_while(); };
+          const early = [{kind: 'drive', height: 0}, {kind: 'pause', paused: false}, {kind: 'drawn'}, {kind: 'steps', count: 1}];
+          for (const message of early) worker.postMessage(message);
+          worker.postMessage({kind: 'module', bytes});
+          await until('ready');
+          for (const message of early) { worker.postMessage(message); await a_while(); }
+          worker.postMessage({kind: 'begin', text: live.caseText, pace: 60});
+          await until('picture');
+          worker.terminate();
+          return heard;
+        })()""")
+        self.assertEqual(heard, ["ready", "began", "picture"])
+
     def test_the_top_wall_follows_a_hand(self):
         self.open()
         self.assertEqual(self.strain(), 0)

@@ -41,6 +41,7 @@ class CaseReader {
       const PlacedLines lines = place_grains(forms_, draft_, sources_);
       forms_.finish_kinds();
       draft_.the_case = complete_sample(draft_.the_case);
+      pour_grains();
       take_quasi_static_speeds();
       take_speed_of_stages();
       check_placement(draft_, lines);
@@ -73,6 +74,16 @@ class CaseReader {
   bool covers_a_kind(const Key& key) const {
     return largest_of_kinds(draft_.the_case,
                             [&](const Case& kind) { return key.acts.covers(kind) ? 1.0 : 0.0; }) > 0;
+  }
+
+  /// Of a case without errors so far.
+  void pour_grains() {
+    if (!draft_.issues.empty() || !is_to_pour(draft_.the_case)) return;
+    try {
+      draft_.the_case = with_poured_grains(draft_.the_case);
+    } catch (const UsageError& error) {
+      draft_.add(draft_.origins["sample.places"], fmt::format("sample.places \"pour\": {}", error.what()));
+    }
   }
 
   /// Does complete_sample say what this key says?

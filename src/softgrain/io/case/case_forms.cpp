@@ -84,7 +84,7 @@ void add_forms_of(Part part, std::string_view walls, std::vector<FormKey>& all) 
   all.push_back(number(name + ".velocity", "m/s", any, "at which they come together, half by each of a pair; below 0: apart"));
   all.push_back(number(name + ".rate", "1/s", any, "of the strain, compression positive"));
   all.push_back(number(name + ".stress", "MPa", positive, "that they keep, compression positive, of a pair in the mean"));
-  all.push_back(number(name + ".speed", "m/s", positive, "of walls that keep a stress, at most; left out: loading.wall_velocity"));
+  all.push_back(number(name + ".speed", "m/s", positive, "of walls that keep a stress, at most; left out: loading.wall_velocity, where other parts move 50 times that"));
   all.push_back(number(name + ".stress_amplitude", "MPa", positive, "of the wave that is added to the stress"));
   all.push_back(number(name + ".strain_amplitude", "", {.low = 0, .high = 1, .without_low = true}, "of the wave of the strain about that where the stage began"));
   all.push_back(number(name + ".period", "ms", positive, "of the wave"));
@@ -100,7 +100,7 @@ void add_shear(std::vector<FormKey>& all) {
   all.push_back(word("stage.xy", {"rest", "quasi-static"}, {}, "shear of a cell that is periodic in x and y; \"rest\" where nothing is said of it"));
   all.push_back(number("stage.xy.rate", "1/s", any, "of the shear strain; above 0 what lies higher goes to +x"));
   all.push_back(number("stage.xy.stress", "MPa", any, "shear stress that the cell keeps, -stress_xy of the columns: it has the sign of the shear that it brings about"));
-  all.push_back(number("stage.xy.speed", "m/s", positive, "of the upper end against the lower one, at most; left out: loading.wall_velocity"));
+  all.push_back(number("stage.xy.speed", "m/s", positive, "of the upper end against the lower one, at most; left out: loading.wall_velocity, where other parts move 50 times that"));
   all.push_back(number("stage.xy.stress_amplitude", "MPa", positive, "of the wave that is added to the stress"));
   all.push_back(number("stage.xy.strain_amplitude", "", positive, "of the wave of the shear strain about that where the stage began"));
   all.push_back(number("stage.xy.period", "ms", positive, "of the wave"));

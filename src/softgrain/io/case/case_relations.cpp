@@ -90,7 +90,8 @@ std::string list_incomplete(const Case& c) {
 
 std::string box_impossible(const Case& c) {
   constexpr double most_random = 0.8, longest = 1e4;
-  if (scope::random.covers(c) && c.sample.packing_fraction >= most_random)
+  if (scope::random.covers(c) && c.sample.places == Places::random &&
+      c.sample.packing_fraction >= most_random)
     return fmt::format(
         "sample.packing_fraction = {} is out of range: for random grains it must be in (0, {})",
         c.sample.packing_fraction, most_random);
@@ -172,6 +173,10 @@ std::string box_unfit(const Case& c) {
     return "gravity lets a cell that is periodic along both axes fall for ever: box.gravity_x and gravity_y "
            "need "
            "walls in y";
+  if (c.box.open_top && (repeats[1] || c.stages.empty()))
+    return "box.open_top needs walls in y, and [[stage]] that say when the top wall comes: the short paths "
+           "move "
+           "it from the start";
   if (scope::shearing.covers(c) && !repeats[1])
     return "experiment.loading \"shear\" shears a cell: it needs box.x and box.y \"periodic\"";
   if (scope::is_path(c, LoadingPath::die) && (repeats[0] || repeats[1]))
@@ -193,10 +198,17 @@ std::string law_impossible(const Case& c) {
 std::string formulation_cannot(const Case& c) {
   const bool updated = c.mpm.formulation == Formulation::updated_lagrangian;
   if (!is_elastic(c)) return "";
-  if (updated && c.experiment.loading != LoadingPath::diametral)
+  if (updated && c.experiment.loading != LoadingPath::diametral &&
+      c.experiment.loading != LoadingPath::compaction)
     return fmt::format(
-        "mpm.formulation \"updated_lagrangian\" needs experiment.loading \"diametral\", not \"{}\"",
+        "mpm.formulation \"updated_lagrangian\" needs experiment.loading \"diametral\" or \"compaction\", "
+        "not "
+        "\"{}\"",
         word_of(c.experiment.loading));
+  if (updated && (c.box.x == BoxEnd::periodic || c.box.y == BoxEnd::periodic))
+    return "mpm.formulation \"updated_lagrangian\" needs walls: leave out box.x and box.y \"periodic\"";
+  if (updated && !c.kinds.empty())
+    return "mpm.formulation \"updated_lagrangian\" takes grains of one material: leave out [[kind]]";
   if (updated && law_impossible(c).empty() && law_choice(c.mpm.law).remembers())
     return fmt::format("mpm.formulation \"updated_lagrangian\" takes elastic laws only, not mpm.law \"{}\"",
                        word_of(c.mpm.law));
@@ -272,7 +284,7 @@ const std::vector<Relation>& case_relations() {
         "mpm.law", "mpm.cells", "sample.placed", "box.x", "box.y", "box.gravity_x", "box.gravity_y",
         "output.report"},
        not_yet_in_space},
-      {{"experiment.loading", "box.x", "box.y", "box.gravity_x", "box.gravity_y"}, box_unfit},
+      {{"experiment.loading", "box.x", "box.y", "box.gravity_x", "box.gravity_y", "box.open_top"}, box_unfit},
   };
   return relations;
 }

@@ -92,7 +92,7 @@ std::vector<Key> all_keys() {
       KEY(mpm.integrator, "", its_words(), "backward Euler, or symplectic Euler with lumped masses; in space explicit, also where it is left out", total_lagrangian),
       KEY(mpm.formulation, "", its_words(),
           "total_lagrangian: on a grid that fits the grain; updated_lagrangian: points move through a lattice that is "
-          "reset in each step, always explicit, for comparison (diametral)", with_mpm),
+          "reset in each step, always explicit, for comparison (diametral, compaction)", with_mpm),
       KEY(mpm.shape_functions, "", its_words(), "of the lattice (updated_lagrangian)", updated_lagrangian),
       KEY(mpm.contact_on, "", its_words(),
           "where contact acts; total_lagrangian: on the outline only", updated_lagrangian),
@@ -151,6 +151,9 @@ std::vector<Key> all_keys() {
 
       KEY(sample.seed, "", at_least(0),
           "seed of the random numbers; another seed is another sample of the same grain", with_chance),
+      KEY(sample.places, "", its_words(),
+          "of the grains at the start; pour: as they lie after they have fallen along -y as rigid disks, with the friction of the case, into a box "
+          "that packing_fraction and aspect would fill: it is as wide as that, and as high as they lie", random),
       KEY(sample.grains, "", from_to(1, 1e6), "grains in the box", random),
       KEY(sample.packing_fraction, "", between(0, 1), "undeformed grain area (volume in space) over that of the box at the start, below 0.8", random),
       KEY(sample.aspect, "", from_to(1e-4, 1e4), "width over height of the box at the start; in space its base is a square", random),
@@ -172,6 +175,8 @@ std::vector<Key> all_keys() {
       KEY(box.y, "", its_words(), "the same along y; periodic only if x is", in_a_box),
       KEY(box.gravity_x, "m/s^2", anything(), "acceleration of gravity along x", in_a_box),
       KEY(box.gravity_y, "m/s^2", anything(), "the same along y: -9.81 m/s^2 pulls down", in_a_box),
+      KEY(box.open_top, "", anything(),
+          "the box has no top wall until a stage moves `top` or `yy`; so long its height is that of the highest grain", with_stages),
       KEY(box.width, "mm", at_least(0), "of the box of placed grains; auto: from the first to the last point of all grains", placed, "auto"),
       KEY(box.height, "mm", at_least(0), "of the box of placed grains; auto: from the lowest to the highest point of all grains", placed, "auto"),
 

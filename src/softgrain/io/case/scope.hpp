@@ -46,7 +46,9 @@ inline constexpr Scope implicit{
 inline constexpr Scope with_pairs{"between the grains of a box",
                                   [](const Case& c) { return is_in_a_box(c) && c.sample.grains > 1; }};
 inline bool is_placed(const Case& c) { return is_in_a_box(c) && !c.sample.placed.empty(); }
-inline bool is_random(const Case& c) { return is_in_a_box(c) && c.sample.placed.empty(); }
+inline bool is_random(const Case& c) {
+  return is_in_a_box(c) && (c.sample.placed.empty() || c.sample.places == Places::pour);
+}
 inline bool has_sizes(const Case& c, SizeLaw law) { return is_random(c) && c.sample.sizes == law; }
 inline constexpr Scope with_chance{"on bpm or random grains in a box",
                                    [](const Case& c) { return is_bpm(c) || is_random(c); }};
@@ -67,6 +69,8 @@ inline bool turns(const Case& c) {
   return is_path(c, LoadingPath::diametral) || is_path(c, LoadingPath::compaction) ||
          is_path(c, LoadingPath::isotropic);
 }
+inline constexpr Scope with_stages{"in a box, along [[stage]]",
+                                   [](const Case& c) { return is_in_a_box(c) && !c.stages.empty(); }};
 inline constexpr Scope with_short_path{"on paths that are not stages",
                                        [](const Case& c) { return c.stages.empty(); }};
 inline constexpr Scope turning{"on diametral, compaction and isotropic paths", turns};

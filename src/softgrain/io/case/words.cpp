@@ -85,6 +85,12 @@ std::span<const Word<Activation>> words_of() {
 }
 
 template <>
+std::span<const Word<Places>> words_of() {
+  static constexpr std::array words{Word{Places::random, "random"}, Word{Places::pour, "pour"}};
+  return words;
+}
+
+template <>
 std::span<const Word<SizeLaw>> words_of() {
   static constexpr std::array words{Word{SizeLaw::uniform, "uniform"}, Word{SizeLaw::lognormal, "lognormal"},
                                     Word{SizeLaw::list, "list"}};

@@ -38,6 +38,8 @@ std::span<const Word<ContactOn>> words_of();
 template <>
 std::span<const Word<Activation>> words_of();
 template <>
+std::span<const Word<Places>> words_of();
+template <>
 std::span<const Word<SizeLaw>> words_of();
 template <>
 std::span<const Word<Precision>> words_of();
