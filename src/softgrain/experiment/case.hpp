@@ -91,10 +91,10 @@ struct Case {
   } contact;
 
   struct Solver {
-    int min_sweeps = 10;
+    int min_sweeps = 8;
     int max_sweeps = 50;
     double tolerance = 1e-5;  ///< mean overlap gained in a step over the mean primary diameter
-    double relaxation = 1.4;  ///< omega
+    double relaxation = 1.2;  ///< omega
     Precision precision = Precision::single;  ///< of the sweeps
   } solver;
 
