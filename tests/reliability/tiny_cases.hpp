@@ -89,6 +89,8 @@ inline std::vector<TinyCase> tiny_cases() {
     const std::string name = entry.path().filename().string();
     const std::string source = (entry.path() / "case.toml").string();
     if (!fs::exists(source)) continue;
+    if (name == "triaxial_3d")
+      continue;  // a stress that is kept takes too long: unit/experiment/test_stages_in_space
     if (name == "jamming")
       cases.push_back({name, source, tiny_path(name), 0});
     else if (name == "die" || name == "tablet")
@@ -102,6 +104,19 @@ inline std::vector<TinyCase> tiny_cases() {
       cases.push_back({name, source, tiny_path(name), name == "relaxation" || name == "poured" ? 1U : 2U});
     else
       cases.push_back({name, source, tiny_settings(name)});
+    if (name == "sphere_walls") {
+      Words more = tiny_path(name);
+      more.insert(more.end(), {"mpm.law=\"von_mises\"", "mpm.yield_stress=\"0.3 MPa\""});
+      cases.push_back({"plastic-sphere_walls", source, more});
+    }
+    if (name == "compaction_3d") {
+      Words more = tiny_path(name);
+      more.insert(more.end(), {"box.x=\"periodic\"", "box.y=\"periodic\"", "box.z=\"periodic\"",
+                               "sample.grains=20", "sample.packing_fraction=0.45", "mpm.law=\"prony\"",
+                               "mpm.relaxation_share_1=0.5", "mpm.relaxation_time_1=\"0.1 ms\"",
+                               "loading.max_strain=0.16", "loading.unload_at=[0.14]"});
+      cases.push_back({"periodic-compaction_3d", source, more});
+    }
     if (name == "soft_rigid") {
       Words more = tiny_path(name);
       more.insert(more.end(), {"mpm.integrator=\"explicit\"", "box.x=\"periodic\"", "sample.grains=9"});

@@ -61,7 +61,7 @@ double half_width(const ImplicitDynamics& dynamics) {
   return -dynamics.adhesion_energy / (2 * dynamics.options.adhesion.front().law.surface_energy);
 }
 
-/// The larger root a of P = pi E* a^2/(4R) - sqrt(2 pi E* w a) [m] (theory (81)).
+/// The larger root a of P = pi E* a^2/(4R) - sqrt(2 pi E* w a) [m] (theory (82)).
 double width_of_jkr(double w, double P) {
   double low = std::cbrt(2 * w * R * R / (pi * E_star)), high = R;
   for (int pass = 0; pass < 60; ++pass) {
@@ -71,7 +71,7 @@ double width_of_jkr(double w, double P) {
   return low;
 }
 
-/// Of a rigid cylinder at a wall, over its gap x^2/(2R) [J/m] (theory (82)).
+/// Of a rigid cylinder at a wall, over its gap x^2/(2R) [J/m] (theory (83)).
 double energy_of_rigid(const Adhesion& law, double radius) {
   return -16.0 / 15 * law.surface_energy * std::sqrt(2 * radius * law.range);
 }

@@ -19,7 +19,7 @@ figure { margin: 1.5rem 0 } img { width: 100%; background: #fff } figcaption { f
 td, th { border-bottom: 1px solid var(--line); padding: .35rem .5rem; text-align: left; vertical-align: top }
 th { position: sticky; top: 0; background: var(--ground) }
 .cause { display: inline-block; color: #fff; padding: 0 .4rem; border-radius: .2rem; font-size: .8rem }
-.bar { display: flex; height: 1.6rem; margin: 1rem 0 } .bar span { color: #fff; text-align: center; font-size: .85rem; overflow: hidden }
+.bar { display: flex; height: 1.6rem; margin: 1rem 0 } .bar span { color: #fff; text-align: center; font-size: .85rem; overflow: hidden } .bar span + span { border-left: 1px solid var(--ground) }
 code { font-size: .8rem; overflow-wrap: anywhere } li { margin: .4rem 0 } dt { font-weight: bold } dd { margin: 0 0 .5rem 1rem }
 a { color: inherit }
 """

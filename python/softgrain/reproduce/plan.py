@@ -71,7 +71,7 @@ def _both(way, model, count):
 SCALES = {
     "quick": Scale(grains=60, cells=5, slow_cells=5, grain_cells=8, primaries=500, grain_seeds=(1, 2), grain_primaries=100,
                    slow_grains=60, nodes_grains=16, last_packing_fraction=1.04, snapshots=12,
-                   seeds=_both(FAST, "bpm", 1) | _both(SLOW, "mpm", 1) | _both(FAST, "mpm", 3) | _both(EARLY, "mpm", 3)
+                   seeds=_both(FAST, "bpm", 1) | {(SLOW, "bpm", 0.0): (1,)} | _both(SLOW, "mpm", 1) | _both(FAST, "mpm", 3) | _both(EARLY, "mpm", 3)
                    | _both(HOOKE, "mpm", 1)),
     "paper": Scale(grains=300, cells=8, slow_cells=6, grain_cells=16, primaries=1750, grain_seeds=(1, 2, 3), grain_primaries=200,
                    slow_grains=60, nodes_grains=16, last_packing_fraction=1.04, snapshots=12,

@@ -274,8 +274,10 @@ def _power_law(results):
         ours, agrees = _exponent(results, FAST, model, friction) or ("too few samples", False)
         changed = []
         for way, cause, words in ((EARLY, causes.CONTACT_RULE, "outlines that meet 1.1 cells early"), (SLOW, causes.SLOW_WALL, "slow wall")):
-            found = _exponent(results, way, model, friction)
+            rough = friction if results.curves(way, model, friction) or model == "mpm" else 0.0  # it does nothing to bonded grains
+            found = _exponent(results, way, model, rough)
             if found:
-                changed.append(Changed(cause, f"{words}: exponent {found[0]}", found[1], results.command(way, model, friction)))
+                words += "" if rough == friction else f", mu = {rough:g}"
+                changed.append(Changed(cause, f"{words}: exponent {found[0]}", found[1], results.command(way, model, rough)))
         yield judge("4", f"{model.upper()}, mu = {friction:g}: Z - Z0 ~ (Phi - Phi0)^0.5 from Phi0 = 0.8", f"exponent {ours}", agrees,
                     changed)

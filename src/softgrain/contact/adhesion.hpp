@@ -4,7 +4,7 @@
 
 namespace softgrain {
 
-/// Adhesion of two surfaces (theory (77)): they attract each other by a traction that falls linearly with the
+/// Adhesion of two surfaces (theory (78)): they attract each other by a traction that falls linearly with the
 /// gap g, from sigma_0 to 0 at the range delta,
 ///   t(g) = sigma_0 (1 - g/delta),  w = sigma_0 delta/2,  Phi(g) = -w (1 - g/delta)^2,
 /// t = dPhi/dg >= 0 pulling; t = sigma_0 for g < 0.
@@ -23,7 +23,7 @@ struct Adhesion {
   }
 
   /// (Phi(g') - Phi(g))/(g' - g) [Pa]: the traction that takes from a motion from g to g' what Phi gains
-  /// (theory (79)); t(g) where they are equal.
+  /// (theory (80)); t(g) where they are equal.
   double mean_traction(double gap, double next) const {
     const double way = next - gap;
     if (std::abs(way) < 1e-12 * range) return traction((gap + next) / 2);

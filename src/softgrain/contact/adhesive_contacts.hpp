@@ -12,7 +12,7 @@
 
 namespace softgrain {
 
-/// Adhesion at one contact in a step of dt (theory (78)). It is a part of the law of contact: the bodies feel
+/// Adhesion at one contact in a step of dt (theory (79)). It is a part of the law of contact: the bodies feel
 /// (p_n - a, p_t) with
 ///   a = pull t_c(g'),  0 <= g' _|_ p_n >= 0,  |p_t| <= mu p_n,  g' = dt u_n,
 /// t_c the mean traction from g to g', or t(g') where the end of the step must be an equilibrium. p_n is the

@@ -87,10 +87,9 @@ class Attempt {
 
  private:
   void sweep() {
-    if (nesterov_)
-      nesterov_->advance();
-    else
-      nlgs_sweep<Dim>(system_, std::span(p_), problem_.friction, 1);
+    if (nesterov_) return nesterov_->advance();
+    ahead_.go_ahead(system_, std::span(p_));
+    ahead_.see(nlgs_sweep<Dim>(system_, std::span(p_), problem_.friction, 1));
   }
 
   const ContactProblem& problem_;
@@ -98,6 +97,7 @@ class Attempt {
   DelassusSystem<Dim> system_;
   std::vector<Vec<Dim>> p_;
   std::optional<NesterovIteration<Dim, DelassusSystem<Dim>>> nesterov_;
+  Extrapolation<Dim> ahead_;  // of NLGS
   int best_sweeps_ = 0;
 
  public:

@@ -1,7 +1,6 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -30,29 +29,25 @@ concept Extrapolates = requires(S& s, double b) {
 };
 
 /// Nesterov's momentum around the sweeps: sweep k + 1 starts from
-///   y = p_k + b (p_k - p_k-1),  b = (t_k - 1)/t_k+1,  t_k+1 = (1 + sqrt(1 + 4 t_k^2))/2,
-/// and from p_k, with t anew, once the violation has grown. The velocities are linear in p, so that they go
-/// ahead alike; a sweep puts every impulse right, so that y may leave the cones of friction.
+///   y = p_k + b (p_k - p_k-1),
+/// b of Momentum: 0 once the violation has grown. The velocities are linear in p, so that they go ahead
+/// alike; a sweep puts every impulse right, so that y may leave the cones of friction.
 template <int Dim>
 class Extrapolation {
  public:
   /// Before a sweep.
   template <Extrapolates System>
   void go_ahead(System& system, std::span<Vec<Dim>> impulse) {
-    const double next = 0.5 * (1 + std::sqrt(1 + 4 * t_ * t_)), b = (t_ - 1) / next;
-    t_ = next;
+    const double b = momentum_.next();
     before_.resize(impulse.size());
     for (std::size_t c = 0; c < impulse.size(); ++c) softgrain::extrapolate(impulse[c], before_[c], b);
     system.extrapolate(b);
   }
   /// After it.
-  void see(const Violation& violation) {
-    if (violation.sum_of_squares > least_) t_ = 1;
-    least_ = violation.sum_of_squares;
-  }
+  void see(const Violation& violation) { momentum_.see(violation.sum_of_squares); }
 
  private:
-  double t_ = 1, least_ = std::numeric_limits<double>::infinity();
+  Momentum momentum_;
   std::vector<Vec<Dim>> before_;
 };
 

@@ -9,7 +9,7 @@ namespace softgrain {
 /// Adhesion of all pairs of kinds of a case, and of kinds and walls, that have a surface energy. Without a
 /// range of its own a pair gets
 ///   delta = 4 sqrt(n h w/(pi E*)),  n = 3,
-/// at which the cohesive zone pi/4 E* w/sigma_0^2 (theory (80)) spans n segments h of the outline of its
+/// at which the cohesive zone pi/4 E* w/sigma_0^2 (theory (81)) spans n segments h of the outline of its
 /// largest grains; rigid grains among themselves and at walls get h/4.
 std::vector<PairAdhesion> adhesion_of(const Case& the_case);
 

@@ -23,6 +23,7 @@ enum class LoadingPath {
   compaction,  ///< grains in a box whose top wall comes down
   isotropic,   ///< grains in a box whose four walls come in
   biaxial,     ///< isotropic to a stress, then top and bottom wall come in while the side walls keep it
+  triaxial,    ///< the same in space, where four side walls keep it
   shear,       ///< isotropic to a stress, then simple shear of a periodic cell under that stress
   die,         ///< the top wall presses grains in a box, keeps the stress, and leaves; the sides open
   relaxation,  ///< compaction, then rest
@@ -94,10 +95,10 @@ struct Case {
   } contact;
 
   struct Solver {
-    int min_sweeps = 10;
+    int min_sweeps = 8;
     int max_sweeps = 50;
     double tolerance = 1e-5;  ///< mean overlap gained in a step over the mean primary diameter
-    double relaxation = 1.4;  ///< omega
+    double relaxation = 1.2;  ///< omega
     Precision precision = Precision::single;  ///< of the sweeps
   } solver;
 
@@ -145,6 +146,7 @@ struct Case {
     double packing_fraction = 0.7;      ///< of the undeformed grains in the box at the start
     double aspect = 1;                  ///< width over height of the box at the start
     std::vector<PlacedGrain> placed{};  ///< in their places, instead of random ones; see complete_sample
+    std::vector<double> placed_z{};     ///< z of each of these in space [m]
   } sample;
 
   /// Of several kinds of grains: what `grain`, `mpm` and `sample` say where there is but one.
@@ -171,10 +173,11 @@ struct Case {
   std::vector<Pair> pairs{};
 
   struct Box {
-    BoxEnd x = BoxEnd::walls, y = BoxEnd::walls;
-    double width = 0, height = 0;         ///< of placed grains [m]; 0: as far as the grains reach
-    double gravity_x = 0, gravity_y = 0;  ///< [m/s^2]
-    bool open_top = false;                ///< no top wall until a stage moves it
+    BoxEnd x = BoxEnd::walls, y = BoxEnd::walls, z = BoxEnd::walls;  ///< z in space
+    /// Of placed grains [m], depth along y in space; 0: as far as the grains reach
+    double width = 0, height = 0, depth = 0;
+    double gravity_x = 0, gravity_y = 0, gravity_z = 0;  ///< [m/s^2]
+    bool open_top = false;                               ///< no top wall until a stage moves it
   } box;
 
   struct Output {
@@ -188,13 +191,22 @@ struct Case {
 /// Grains in a box; else one grain between two walls.
 inline bool is_in_a_box(const Case& c) { return c.experiment.loading != LoadingPath::diametral; }
 inline bool is_in_space(const Case& c) { return c.experiment.dimension == 3; }
-/// A box that repeats along x, y.
-inline std::array<bool, 2> repeats_of(const Case& c) {
+/// A box that repeats along x, y, and z in space.
+inline std::array<bool, 3> repeats_of(const Case& c) {
   if (!is_in_a_box(c)) return {};
-  return {c.box.x == BoxEnd::periodic, c.box.y == BoxEnd::periodic};
+  return {c.box.x == BoxEnd::periodic, c.box.y == BoxEnd::periodic,
+          is_in_space(c) && c.box.z == BoxEnd::periodic};
 }
-inline Vec<2> gravity_of(const Case& c) {
-  return is_in_a_box(c) ? Vec<2>{c.box.gravity_x, c.box.gravity_y} : Vec<2>{};
+/// Along the axis of the height.
+inline bool repeats_in_height(const Case& c) {
+  return repeats_of(c)[static_cast<std::size_t>(c.experiment.dimension - 1)];
+}
+template <int Dim = 2>
+Vec<Dim> gravity_of(const Case& c) {
+  if (!is_in_a_box(c)) return {};
+  Vec<Dim> g{c.box.gravity_x, c.box.gravity_y};
+  if constexpr (Dim == 3) g[2] = c.box.gravity_z;
+  return g;
 }
 inline bool is_bonded(const Case& c) { return c.experiment.model == GrainModel::bpm; }
 inline bool is_elastic(const Case& c) { return c.experiment.model == GrainModel::mpm; }

@@ -28,6 +28,7 @@ Case twin_of(Case c) {
   c.sample.packing_fraction = std::min(c.sample.packing_fraction, 0.2);
   c.sample.aspect = 1;
   c.sample.placed.clear();
+  c.sample.placed_z.clear();
   return c;
 }
 

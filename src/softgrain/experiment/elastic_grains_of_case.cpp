@@ -75,15 +75,6 @@ GrainPlacement placement(const std::shared_ptr<const Topology>& shape, const Pla
           .kind = grain.kind};
 }
 
-std::vector<PairFriction> pair_friction_of(const Case& c) {
-  std::vector<PairFriction> friction;
-  for (const Case::Pair& pair : c.pairs)
-    if (pair.friction)
-      friction.push_back(
-          {pair.kind, pair.other == Case::Pair::wall ? PairFriction::wall : pair.other, *pair.friction});
-  return friction;
-}
-
 /// Between walls that meet the circle through its vertices.
 Box<2> box_of_grain(const Case& c, const Topology& shape) {
   double reach = 0;
@@ -170,6 +161,15 @@ PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box, double
 }
 
 }  // namespace
+
+std::vector<PairFriction> pair_friction_of(const Case& c) {
+  std::vector<PairFriction> friction;
+  for (const Case::Pair& pair : c.pairs)
+    if (pair.friction)
+      friction.push_back(
+          {pair.kind, pair.other == Case::Pair::wall ? PairFriction::wall : pair.other, *pair.friction});
+  return friction;
+}
 
 double longest_time_step(const Case& c) {
   constexpr double no_limit = std::numeric_limits<double>::infinity();

@@ -35,6 +35,8 @@ double wave_modulus(const Case& c) {
 double grain_area(const Case& c) {
   if (is_in_space(c)) {
     if (!is_in_a_box(c)) return 4 * std::numbers::pi / 3 * std::pow(c.grain.radius, 3);
+    if (!c.sample.placed.empty()) return c.sample.packing_fraction * c.box.width * c.box.depth * c.box.height;
+    if (!c.kinds.empty()) return sum_of_kinds(c, grain_area);
     return c.sample.grains * std::numbers::pi / 6 * mean_cube_diameter(diameter_law(c.sample, 3));
   }
   if (!is_in_a_box(c)) return std::numbers::pi * c.grain.radius * c.grain.radius;
@@ -65,7 +67,7 @@ double loading_time(const Case& c) {
   LoadingFrame frame = frame_of(c);
   const double height = box_height(c);
   if (is_in_a_box(c)) {
-    frame.start = {height, c.sample.aspect * height, is_in_space(c) ? c.sample.aspect * height : 0};
+    frame.start = {height, frame.aspect_y * height, is_in_space(c) ? frame.aspect * height : 0};
     frame.measure.length = height;
   }
   double time = 0;
@@ -91,6 +93,7 @@ int points_of_grain(const Case& c) {
 double box_height(const Case& c) {
   if (is_in_space(c)) {
     if (!is_in_a_box(c)) return 2 * c.grain.radius;
+    if (!c.sample.placed.empty()) return c.box.height;
     return std::cbrt(grain_area(c) / c.sample.packing_fraction / (c.sample.aspect * c.sample.aspect));
   }
   return std::sqrt(grain_area(c) / c.sample.packing_fraction / c.sample.aspect);
@@ -113,6 +116,7 @@ double implicit_time_step(const Case& c, double R) {
 double first_time_step(const Case& c) {
   if (is_bonded(c)) return c.time.step > 0 ? c.time.step : stable_bond_step(c);
   if (c.time.step > 0) return c.time.step;
+  if (is_in_space(c) && !c.kinds.empty()) return least_of_kinds(c, first_time_step);
   if (is_in_space(c))
     return 0.36 * smallest_radius(c) / c.mpm.cells / std::sqrt(wave_modulus(c) / c.grain.density);
   if (is_implicit(c) || is_rigid(c)) return implicit_time_step(c, smallest_radius(c));

@@ -1,10 +1,12 @@
 #pragma once
 #include <memory>
+#include <vector>
 
 #include "softgrain/experiment/case.hpp"
 #include "softgrain/experiment/sample.hpp"
 #include "softgrain/geometry/box.hpp"
 #include "softgrain/model/model.hpp"
+#include "softgrain/soft/pair_friction.hpp"
 
 namespace softgrain {
 
@@ -22,6 +24,9 @@ using PlacedModel = PlacedModelOf<2>;
 PlacedModel bonded_grains_of(const Case& the_case);
 PlacedModel elastic_grains_of(const Case& the_case);
 PlacedModelOf<3> solid_grains_of(const Case& the_case);
+
+/// Friction of the pairs of kinds of a case.
+std::vector<PairFriction> pair_friction_of(const Case& the_case);
 
 /// The longest time step [s] with which an explicit run of the case is stable from its start on, with grains
 /// of the smallest radius that it allows; infinite where the integrator or the model has no such limit. While

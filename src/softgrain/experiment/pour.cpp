@@ -15,7 +15,7 @@ constexpr double loose = 0.4;
 /// Steps in which the smallest grain falls by its radius at full speed.
 constexpr double steps_a_radius = 25;
 /// At rest: the mean speed, over that of falling.
-constexpr double at_rest = 1e-5;
+constexpr double at_rest = 1e-3;
 /// Times the fall of the whole column, after which whatever has not come to rest never will.
 constexpr std::int64_t most_falls = 20;
 /// Of lists of pairs, over the smallest radius.
@@ -56,7 +56,7 @@ RigidDynamics<2> disks_of(const BoxSample& column, const PourOptions& options) {
   disks.cell = box.cell;
   const int n = disks.size();
   const RigidStepOptions step{
-      .solver = {.min_sweeps = 10, .max_sweeps = 500, .tolerance = 1e-5, .extrapolated = true},
+      .solver = {.min_sweeps = 10, .max_sweeps = 500, .tolerance = 5e-6, .extrapolated = true},
       .law = {.push_out = 0.2}};
   RigidDynamics<2> dynamics(
       std::move(disks),

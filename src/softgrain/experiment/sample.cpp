@@ -12,7 +12,8 @@ namespace {
 
 BoxSampleOptions options_of(const Case& c) {
   std::vector<GrainsOfKind> kinds;
-  for (const Case::Kind& kind : c.kinds) kinds.push_back({kind.grains, diameter_law(kind.sizes)});
+  for (const Case::Kind& kind : c.kinds)
+    kinds.push_back({kind.grains, diameter_law(kind.sizes, c.experiment.dimension)});
   return {.grains = c.sample.grains,
           .sizes = kinds.empty() ? diameter_law(c.sample, c.experiment.dimension) : DiameterLaw{},
           .kinds = std::move(kinds),
@@ -22,14 +23,63 @@ BoxSampleOptions options_of(const Case& c) {
           .seed = static_cast<std::uint64_t>(c.sample.seed)};
 }
 
+/// Number, sizes, box and packing fraction of placed grains.
+Case with_box_of_placed(Case c) {
+  Case::Sample& sample = c.sample;
+  const bool solid = is_in_space(c);
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const auto n = sample.placed.size();
+  const auto place = [&](std::size_t i, int k) -> double& {
+    return k == 2 ? sample.placed_z[i] : sample.placed[i].centre[k];
+  };
+  Vec<3> low{infinite, infinite, infinite}, high{-infinite, -infinite, -infinite};
+  double filled = 0;
+  sample.smallest_diameter = infinite;
+  sample.largest_diameter = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double R = sample.placed[i].radius;
+    for (int k = 0; k < c.experiment.dimension; ++k) {
+      low[k] = std::min(low[k], place(i, k) - R);
+      high[k] = std::max(high[k], place(i, k) + R);
+    }
+    filled += solid ? 4 * std::numbers::pi / 3 * R * R * R : std::numbers::pi * R * R;
+    sample.smallest_diameter = std::min(sample.smallest_diameter, 2 * R);
+    sample.largest_diameter = std::max(sample.largest_diameter, 2 * R);
+  }
+  double* const sides[] = {&c.box.width, solid ? &c.box.depth : &c.box.height, &c.box.height};
+  for (int k = 0; k < c.experiment.dimension; ++k) {
+    if (*sides[k] > 0) continue;
+    *sides[k] = high[k] - low[k];
+    for (std::size_t i = 0; i < n; ++i) place(i, k) -= low[k];
+  }
+  sample.grains = static_cast<int>(n);
+  sample.packing_fraction = filled / (c.box.width * c.box.height * (solid ? c.box.depth : 1));
+  sample.aspect = c.box.width / c.box.height;
+  return c;
+}
+
 }  // namespace
 
 BoxSample sample_box(const Case& c) {
-  if (!c.sample.placed.empty()) return {c.box.width, c.box.height, repeats_of(c), c.sample.placed};
+  const auto repeats = repeats_of(c);
+  if (!c.sample.placed.empty()) return {c.box.width, c.box.height, {repeats[0], repeats[1]}, c.sample.placed};
   return sample_box(options_of(c));
 }
 
-BoxSampleOf<3> sample_solid_box(const Case& c) { return sample_solid_box(options_of(c)); }
+BoxSampleOf<3> sample_solid_box(const Case& c) {
+  if (c.sample.placed.empty()) return sample_solid_box(options_of(c));
+  BoxSampleOf<3> sample{
+      .width = c.box.width, .height = c.box.height, .repeats = repeats_of(c), .depth = c.box.depth};
+  const auto seed = static_cast<std::uint64_t>(c.sample.seed);
+  for (std::size_t i = 0; i < c.sample.placed.size(); ++i) {
+    const PlacedGrain& grain = c.sample.placed[i];
+    sample.grains.push_back({.centre = {grain.centre[0], grain.centre[1], c.sample.placed_z[i]},
+                             .radius = grain.radius,
+                             .angle = turn_of_sphere(seed, i),
+                             .kind = grain.kind});
+  }
+  return sample;
+}
 
 bool is_to_pour(const Case& c) {
   return is_in_a_box(c) && c.sample.places == Places::pour && c.sample.placed.empty();
@@ -83,31 +133,7 @@ Case complete_sample(Case c) {
       sample.largest_diameter = std::max(sample.largest_diameter, law.greatest());
     }
   }
-  if (sample.placed.empty()) return c;
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  Vec<2> low{infinite, infinite}, high{-infinite, -infinite};
-  double area = 0;
-  sample.smallest_diameter = infinite;
-  sample.largest_diameter = 0;
-  for (const PlacedGrain& grain : sample.placed) {
-    for (int k = 0; k < 2; ++k) {
-      low[k] = std::min(low[k], grain.centre[k] - grain.radius);
-      high[k] = std::max(high[k], grain.centre[k] + grain.radius);
-    }
-    area += std::numbers::pi * grain.radius * grain.radius;
-    sample.smallest_diameter = std::min(sample.smallest_diameter, 2 * grain.radius);
-    sample.largest_diameter = std::max(sample.largest_diameter, 2 * grain.radius);
-  }
-  double* const sides[] = {&c.box.width, &c.box.height};
-  for (int k = 0; k < 2; ++k) {
-    if (*sides[k] > 0) continue;
-    *sides[k] = high[k] - low[k];
-    for (PlacedGrain& grain : sample.placed) grain.centre[k] -= low[k];
-  }
-  sample.grains = static_cast<int>(sample.placed.size());
-  sample.packing_fraction = area / (c.box.width * c.box.height);
-  sample.aspect = c.box.width / c.box.height;
-  return c;
+  return sample.placed.empty() ? c : with_box_of_placed(std::move(c));
 }
 
 AggregateLibrary library_of(const Case& c) {

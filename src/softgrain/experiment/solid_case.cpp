@@ -1,20 +1,12 @@
 #include "softgrain/experiment/solid_case.hpp"
 
-#include <algorithm>
-#include <array>
-
+#include "softgrain/experiment/kinds.hpp"
 #include "softgrain/material/any_law.hpp"
 
 namespace softgrain {
 namespace {
 
 constexpr int most_cells = 24;
-
-bool is_known_path(LoadingPath path) {
-  constexpr std::array known{LoadingPath::diametral, LoadingPath::compaction, LoadingPath::isotropic,
-                             LoadingPath::relaxation};
-  return std::find(known.begin(), known.end(), path) != known.end();
-}
 
 }  // namespace
 
@@ -33,27 +25,34 @@ std::string not_yet_in_space(const Case& c) {
         "space "
         "(docs/decisions/0050)",
         "write \"explicit\" or leave it out");
-  if (!c.kinds.empty()) return not_yet("several [[kind]]", "give one kind");
-  if (!c.stages.empty() || !is_known_path(c.experiment.loading))
-    return not_yet(
-        "this loading path",
-        "experiment.loading takes \"diametral\", \"compaction\", \"isotropic\" and \"relaxation\"");
-  if (!c.sample.placed.empty())
-    return not_yet("placed grains (sample.file)", "leave it out: places are random");
-  const auto repeats = repeats_of(c);
-  if (repeats[0] || repeats[1])
-    return not_yet("a periodic box", "write box.x = \"walls\" and box.y = \"walls\"");
-  if (c.box.gravity_x != 0 || c.box.gravity_y != 0)
-    return not_yet("gravity", "leave box.gravity_x and box.gravity_y out");
+  if (c.experiment.loading == LoadingPath::shear)
+    return not_yet("shear of a cell", "experiment.loading takes \"triaxial\", or tables [[stage]]");
+  if (c.experiment.loading == LoadingPath::biaxial)
+    return not_yet("the path \"biaxial\", between two walls that rest",
+                   "write \"triaxial\", where four side walls keep the stress, or tables [[stage]]");
+  if (c.sample.places == Places::pour)
+    return not_yet("sample.places \"pour\"", "leave it out: places are random");
+  if (c.box.open_top) return not_yet("box.open_top", "leave it out: six walls hold the spheres");
   if (c.contact.surface_energy > 0 || c.contact.wall_surface_energy > 0)
     return not_yet("adhesion", "leave contact.surface_energy and contact.wall_surface_energy out");
   if (c.output.report) return not_yet("the page of a run", "write output.report = false, or leave it out");
-  if (law_choice(c.mpm.law).remembers())
-    return not_yet("a law of the material that flows, creeps or relaxes", "write mpm.law = \"neo_hookean\"");
+  for (int k = 0; k < kinds_of(c); ++k) {
+    const Case kind = case_of_kind(c, k);
+    if (is_rigid(kind)) return not_yet("rigid grains", "write model = \"mpm\"");
+    if (law_choice(kind.mpm.law).flows() && kind.mpm.material.kinematic_modulus > 0)
+      return not_yet("mpm.kinematic_modulus", "leave it out, and let mpm.hardening_modulus harden alone");
+  }
   if (c.mpm.cells > most_cells)
     return not_yet("more than 24 mpm.cells, 32 cells^3 points in a grain",
                    "6 are within 5 %, 8 within 1.5 %");
   return "";
+}
+
+void set_defaults_of_space(Case& c, const std::function<bool(const char* key)>& is_given) {
+  if (!is_in_space(c)) return;
+  if (!is_given("mpm.integrator")) c.mpm.integrator = Integrator::symplectic_euler;
+  if (!is_given("mpm.cells")) c.mpm.cells = 6;
+  if (!is_given("output.report")) c.output.report = false;
 }
 
 }  // namespace softgrain

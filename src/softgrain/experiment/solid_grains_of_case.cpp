@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <map>
 
 #include "softgrain/experiment/grains_of_case.hpp"
+#include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/solid_case.hpp"
+#include "softgrain/material/any_law.hpp"
 #include "softgrain/soft/elastic_grains.hpp"
 
 namespace softgrain {
@@ -17,39 +20,68 @@ constexpr double step_share = 0.6;
 /// 0.49, while at 0.45 it is nearer to the truth than the mean (docs/decisions/0050).
 constexpr double locking_poisson_ratio = 0.475;
 
+/// What flows does so at constant volume, and would lock too.
+GrainMaterial solid_material(const Case& kind) {
+  const LawChoice& choice = law_choice(kind.mpm.law);
+  const bool flows = choice.flows() || choice.takes(&MaterialParameters::creep_rate);
+  return {.law = make_law(kind.mpm.law, kind.mpm.material),
+          .density = kind.grain.density,
+          .mean_dilatation = flows || kind.mpm.material.poisson_ratio >= locking_poisson_ratio};
+}
+
 SolidGrains solid_grains(const Case& c, std::vector<PlacementOf<3>> placed) {
-  const double nu = c.mpm.material.poisson_ratio;
-  return {std::move(placed), std::vector<GrainMaterial>{{.law = make_law(c.mpm.law, c.mpm.material),
-                                                         .density = c.grain.density,
-                                                         .mean_dilatation = nu >= locking_poisson_ratio}}};
+  std::vector<GrainMaterial> materials;
+  for (int k = 0; k < kinds_of(c); ++k) materials.push_back(solid_material(case_of_kind(c, k)));
+  return {std::move(placed), std::move(materials)};
+}
+
+/// The grid of each kind; those of one resolution share it.
+std::vector<std::shared_ptr<const SolidTopology>> solid_shapes(const Case& c) {
+  std::map<int, std::shared_ptr<const SolidTopology>> by_cells;
+  std::vector<std::shared_ptr<const SolidTopology>> shapes;
+  for (int k = 0; k < kinds_of(c); ++k) {
+    const int cells = case_of_kind(c, k).mpm.cells;
+    std::shared_ptr<const SolidTopology>& shape = by_cells[cells];
+    if (!shape) shape = std::make_shared<const SolidTopology>(ball_grid(cells));
+    shapes.push_back(shape);
+  }
+  return shapes;
+}
+
+double least_radius(const Case& kind) {
+  if (!is_in_a_box(kind)) return kind.grain.radius;
+  return (kind.sample.placed.empty() ? diameter_law(kind.sample).least() : kind.sample.smallest_diameter) / 2;
 }
 
 }  // namespace
 
 double longest_solid_step(const Case& c) {
-  const auto shape = std::make_shared<const SolidTopology>(ball_grid(c.mpm.cells));
-  const double radius = is_in_a_box(c) ? diameter_law(c.sample).least() / 2 : c.grain.radius;
-  return longest_stable_step(
-      solid_grains(c, {{.topology = shape, .radius = radius, .centre = {}, .velocity = {}}}),
-      solid_damping_share);
+  return least_of_kinds(c, [](const Case& kind) {
+    const auto shape = std::make_shared<const SolidTopology>(ball_grid(kind.mpm.cells));
+    return longest_stable_step(
+        SolidGrains({{.topology = shape, .radius = least_radius(kind), .centre = {}, .velocity = {}}},
+                    {solid_material(kind)}),
+        solid_damping_share);
+  });
 }
 
 PlacedModelOf<3> solid_grains_of(const Case& c) {
   check_time_step(c);
-  const auto shape = std::make_shared<const SolidTopology>(ball_grid(c.mpm.cells));
+  const auto shapes = solid_shapes(c);
   std::vector<PlacementOf<3>> placed;
   Box<3> box;
   if (is_in_a_box(c)) {
     const BoxSampleOf<3> sample = sample_solid_box(c);
     for (const PlacedGrainOf<3>& grain : sample.grains)
-      placed.push_back({.topology = shape,
+      placed.push_back({.topology = shapes[static_cast<std::size_t>(grain.kind)],
                         .radius = grain.radius,
                         .centre = grain.centre,
                         .angle = grain.angle,
-                        .velocity = {}});
+                        .velocity = {},
+                        .kind = grain.kind});
     box = box_of(sample);
   } else {
-    placed.push_back({.topology = shape, .radius = c.grain.radius, .centre = {}, .velocity = {}});
+    placed.push_back({.topology = shapes[0], .radius = c.grain.radius, .centre = {}, .velocity = {}});
     box = solid_walls_at(-c.grain.radius, c.grain.radius);
   }
   SolidGrains grains = solid_grains(c, std::move(placed));
@@ -59,6 +91,8 @@ PlacedModelOf<3> solid_grains_of(const Case& c) {
   const ExplicitOptionsOf<3> options{.damping_share = solid_damping_share,
                                      .friction = c.contact.friction,
                                      .wall_friction = c.contact.wall_friction,
+                                     .pair_friction = pair_friction_of(c),
+                                     .gravity = gravity_of<3>(c),
                                      .damping = c.mpm.damping};
   ExplicitStep<3> dynamics(std::move(grains), box, options);
   return {std::make_unique<ElasticGrains<ExplicitStep<3>>>(std::move(dynamics)), std::move(box), dt};

@@ -10,8 +10,7 @@
 namespace softgrain {
 namespace {
 
-constexpr auto yy = static_cast<std::size_t>(Part::yy), xx = static_cast<std::size_t>(Part::xx),
-               top = static_cast<std::size_t>(Part::top);
+constexpr std::size_t yy = number_of(Part::yy), top = number_of(Part::top);
 
 Drive at_velocity(Part part, double velocity) {
   return {.part = part, .control = Control::velocity, .value = velocity};
@@ -21,7 +20,17 @@ Drive keeps(Part part, double stress) { return {.part = part, .control = Control
 Stage rest(double time) { return {.name = "rest", .until = {.time = time}}; }
 
 /// What presses along y: the top wall, or the cell.
-Part pressing(const Case& c) { return repeats_of(c)[1] ? Part::yy : Part::top; }
+Part pressing(const Case& c) { return repeats_in_height(c) ? Part::yy : Part::top; }
+
+/// The pairs of side walls; in space those along y and along x.
+std::vector<Part> sides(const Case& c) {
+  return is_in_space(c) ? std::vector{Part::xx, Part::xy} : std::vector{Part::xx};
+}
+std::vector<Drive> all_keep(const Case& c, double stress) {
+  std::vector<Drive> drives{keeps(Part::yy, stress)};
+  for (const Part side : sides(c)) drives.push_back(keeps(side, stress));
+  return drives;
+}
 
 /// Strain by which the sides of a die open at most.
 constexpr double most_opened = 0.1;
@@ -64,9 +73,7 @@ std::vector<Stage> turning(const Case& c) {
              .until = {.time = loading.hold},
              .only_by_exit = true,
              .key = "loading.hold_stress"};
-  if (is_isotropic(c))
-    hold.drives = {keeps(Part::yy, loading.hold_stress), keeps(Part::xx, loading.hold_stress)};
-  if (is_isotropic(c) && is_in_space(c)) hold.drives.push_back(keeps(Part::xy, loading.hold_stress));
+  if (is_isotropic(c)) hold.drives = all_keep(c, loading.hold_stress);
   stages.push_back(hold);
   return stages;
 }
@@ -80,18 +87,18 @@ std::vector<Stage> confined(const Case& c) {
                 .limit = c.loading.max_strain};
   confine.until.stress[yy] = confining;
   const Stage keep{.name = "keep",
-                   .drives = {keeps(Part::yy, confining), keeps(Part::xx, confining)},
+                   .drives = all_keep(c, confining),
                    .until = {.time = c.loading.hold},
                    .key = "loading.confining_stress"};
   if (c.loading.hold == 0) return {confine};
   return {confine, keep};
 }
 
+/// In space triaxial.
 std::vector<Stage> biaxial(const Case& c) {
   const double v = c.loading.wall_velocity, confining = c.loading.confining_stress;
-  Stage compress{.name = "compress",
-                 .drives = {at_velocity(Part::yy, v), keeps(Part::xx, confining)},
-                 .key = "loading.confining_stress"};
+  Stage compress{.name = "compress", .drives = all_keep(c, confining), .key = "loading.confining_stress"};
+  compress.drives.front() = at_velocity(Part::yy, v);
   compress.until.strain[0] = c.loading.max_strain;
   if (c.loading.max_stress > 0)
     compress.exits = {{.stress = c.loading.max_stress, .key = "loading.max_stress"}};
@@ -124,12 +131,17 @@ std::vector<Stage> die(const Case& c) {
   unload.until.stress[top] = 0;
   std::vector<Stage> stages{press, hold, unload};
   if (c.loading.eject) {
-    Stage eject{.name = "eject", .drives = {at_velocity(Part::xx, -v)}}, lift = unload;
-    eject.until.stress[xx] = 0;
+    Stage eject{.name = "eject"}, lift = unload;
+    for (const Part side : sides(c)) eject.drives.push_back(at_velocity(side, -v));
     eject.limit = -most_opened;
     lift.name = "lift";
     lift.limit = -most_opened / 2;
-    stages.insert(stages.end(), {eject, lift, rest(c.loading.hold)});
+    for (const Part side : sides(c)) {  // all of them until one bears nothing, and until the others do not
+      eject.until.stress = {};
+      eject.until.stress[number_of(side)] = 0;
+      stages.push_back(eject);
+    }
+    stages.insert(stages.end(), {lift, rest(c.loading.hold)});
   }
   if (c.loading.hold == 0) std::erase_if(stages, [](const Stage& stage) { return stage.until.time == 0; });
   return stages;
@@ -176,11 +188,13 @@ double speed_of(const Drive& drive, double length) {
 }  // namespace
 
 LoadingFrame frame_of(const Case& c) {
-  LoadingFrame frame{.measure = {},
-                     .wall_velocity = c.loading.wall_velocity,
-                     .aspect = c.sample.aspect,
-                     .packing_fraction = first_packing_fraction(c),
-                     .dimension = c.experiment.dimension};
+  LoadingFrame frame{
+      .measure = {},
+      .wall_velocity = c.loading.wall_velocity,
+      .aspect = c.sample.aspect,
+      .aspect_y = is_in_space(c) && !c.sample.placed.empty() ? c.box.depth / c.box.height : c.sample.aspect,
+      .packing_fraction = first_packing_fraction(c),
+      .dimension = c.experiment.dimension};
   if (!is_in_a_box(c)) frame.measure = {StrainMeasure::Kind::of_grain, 2 * c.grain.radius};
   return frame;
 }
@@ -199,14 +213,13 @@ double last_strain(const Case& c) {
 void check_loading(const Case& c) {
   const Case::Loading& loading = c.loading;
   require(loading.wall_velocity > 0, "loading.wall_velocity must be > 0, got {} m/s", loading.wall_velocity);
-  if (!c.stages.empty()) return check_stages(c.stages);
+  if (!c.stages.empty()) return check_stages(c.stages, c.experiment.dimension);
   require(loading.max_strain > 0, "loading.max_strain must be > 0, got {}", loading.max_strain);
   require(loading.hold >= 0, "loading.hold must be >= 0, got {} s", loading.hold);
   require(loading.hold_stress == 0 || loading.hold > 0,
           "loading.hold_stress {} Pa needs loading.hold > 0: for how long", loading.hold_stress);
   const LoadingPath path = c.experiment.loading;
-  if (path != LoadingPath::biaxial && path != LoadingPath::shear && path != LoadingPath::die &&
-      path != LoadingPath::relaxation)
+  if (path == LoadingPath::diametral || path == LoadingPath::compaction || path == LoadingPath::isotropic)
     check_turns(loading);
 }
 
@@ -214,6 +227,7 @@ std::vector<Stage> stages_of(const Case& c) {
   if (!c.stages.empty()) return c.stages;
   switch (c.experiment.loading) {
     case LoadingPath::biaxial:
+    case LoadingPath::triaxial:
       return biaxial(c);
     case LoadingPath::shear:
       return shear(c);
@@ -259,9 +273,13 @@ double largest_named_stress(const Case& c) {
 double fastest_speed(const Case& c, double height) {
   double fastest = 0;
   for (const Stage& stage : c.stages)
-    for (const Drive& drive : stage.drives)
-      fastest =
-          std::max(fastest, speed_of(drive, axis_of(drive.part) == 1 ? height : c.sample.aspect * height));
+    for (const Drive& drive : stage.drives) {
+      const int component = component_of(drive.part);
+      const double aspect = component == 1                     ? frame_of(c).aspect_y
+                            : component == 2 && is_in_space(c) ? frame_of(c).aspect
+                                                               : 1;
+      fastest = std::max(fastest, speed_of(drive, aspect * height));
+    }
   return fastest;
 }
 

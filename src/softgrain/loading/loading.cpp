@@ -33,7 +33,7 @@ void LoadingOf<Dim>::plan_stages() {
 template <int Dim>
 std::size_t LoadingOf<Dim>::first_to_move_top() const {
   const auto moves_top = [&](const Drive& drive) {
-    return drive.control != Control::rest && share_in<Dim>(drive.part, frame_.aspect)[top_wall] != 0;
+    return drive.control != Control::rest && frame_.template shares<Dim>(drive.part)[top_wall] != 0;
   };
   const auto first = std::find_if(stages_.begin(), stages_.end(), [&](const Stage& stage) {
     return std::any_of(stage.drives.begin(), stage.drives.end(), moves_top);
@@ -123,10 +123,9 @@ void LoadingOf<Dim>::drive(Box<Dim>& box, const ModelOf<Dim>& model, double time
   for (std::size_t d = 0; d < stage.drives.size(); ++d)
     if (stage.drives[d].control == Control::stress && moves_cell(stage.drives[d], box))
       speeds[d] = push_cell(stage.drives[d], box, model, time, dt);
-  if constexpr (Dim == 2)
-    if (box.cell.any()) move_cell(stage, speeds, box);
+  if (box.cell.any()) move_cell(stage, speeds, box);
   for (std::size_t d = 0; d < stage.drives.size(); ++d) {
-    const auto share = share_in<Dim>(stage.drives[d].part, frame_.aspect);
+    const auto share = frame_.template shares<Dim>(stage.drives[d].part);
     for (std::size_t w = 0; w < box.walls.size(); ++w)
       // from 0: a wall that rests has no negative zeros
       if (share[w] != 0) box.walls[w].velocity = Vec<Dim>{} + (share[w] * speeds[d]) * box.walls[w].normal;

@@ -35,18 +35,18 @@ void LoadingOf<Dim>::move_cell(const Stage& stage, const Speeds& speeds, Box<Dim
   PeriodicCell<Dim>& cell = box.cell;
   std::array<double, 3> closing{};
   for (std::size_t d = 0; d < stage.drives.size(); ++d)
-    for (int c = 0; c < 3; ++c)
-      closing[c] += closing_share(stage.drives[d].part, c, frame_.aspect, Dim) * speeds[d];
-  for (int axis = 0; axis < 2; ++axis)
-    if (box.repeats(axis)) cell.rate(axis, axis) = 0 - closing[static_cast<std::size_t>(1 - axis)];
-  cell.rate(0, 1) = cell.rate(0, 0) / cell.edges(0, 0) * cell.edges(0, 1) + closing[2] * cell.edges(1, 1);
+    for (int c = 0; c < 3; ++c) closing[c] += frame_.closing_share(stage.drives[d].part, c) * speeds[d];
+  for (int axis = 0; axis < Dim; ++axis)
+    if (box.repeats(axis)) cell.rate(axis, axis) = 0 - closing[static_cast<std::size_t>(Dim - 1 - axis)];
+  if (Dim == 2)
+    cell.rate(0, 1) = cell.rate(0, 0) / cell.edges(0, 0) * cell.edges(0, 1) + closing[2] * cell.edges(1, 1);
 }
 
 /// sum_w share_w l_w [m]: what a stress presses on.
 template <int Dim>
 double LoadingOf<Dim>::pressed_length(const Drive& drive, const Box<Dim>& box) const {
   if (Dim == 2 && drive.part == Part::xy) return box.width();
-  const auto share = share_in<Dim>(drive.part, frame_.aspect);
+  const auto share = frame_.template shares<Dim>(drive.part);
   double length = 0;
   for (std::size_t w = 0; w < box.faces(); ++w)
     if (share[w] != 0) length += share[w] * side_of_wall(box, w);
@@ -57,7 +57,7 @@ double LoadingOf<Dim>::pressed_length(const Drive& drive, const Box<Dim>& box) c
 template <int Dim>
 double LoadingOf<Dim>::impulse_of(const Drive& drive, const Box<Dim>& box) const {
   if (Dim == 2 && drive.part == Part::xy) return -box.moment(0, 1) / box.height();
-  const auto share = share_in<Dim>(drive.part, frame_.aspect);
+  const auto share = frame_.template shares<Dim>(drive.part);
   double impulse = 0;
   for (std::size_t w = 0; w < box.faces(); ++w)
     if (share[w] != 0) impulse += share[w] * box.outward_impulse(w);
@@ -119,7 +119,7 @@ double LoadingOf<Dim>::closing_speed(const Stage& stage, const Speeds& speeds, i
   double closing = 0;
   for (std::size_t d = 0; d < stage.drives.size(); ++d)
     if (stage.drives[d].is_given())
-      closing += closing_share(stage.drives[d].part, component, frame_.aspect, Dim) * speeds[d];
+      closing += frame_.closing_share(stage.drives[d].part, component) * speeds[d];
   return closing;
 }
 
@@ -129,7 +129,7 @@ void LoadingOf<Dim>::end_at_strain(const Stage& stage, const Box<Dim>& box, Spee
   for (int c = 0; c < 3; ++c) {
     if (!stage.until.strain[c] || closing_[c] == 0) continue;
     const bool alone = std::all_of(stage.drives.begin(), stage.drives.end(), [&](const Drive& drive) {
-      return drive.is_given() || closing_share(drive.part, c, 1, Dim) == 0 || drive.control == Control::rest;
+      return drive.is_given() || frame_.closing_share(drive.part, c) == 0 || drive.control == Control::rest;
     });
     if (!alone) continue;
     const double to = frame_.travel(c, *stage.until.strain[c]), closing = closing_[c];
@@ -147,7 +147,7 @@ void LoadingOf<Dim>::end_at_strain(const Stage& stage, const Box<Dim>& box, Spee
 template <int Dim>
 Press LoadingOf<Dim>::press_of(const Drive& drive, const Box<Dim>& box, const ModelOf<Dim>& model,
                                double time, double dt) const {
-  const auto share = share_in<Dim>(drive.part, frame_.aspect);
+  const auto share = frame_.template shares<Dim>(drive.part);
   const bool of_cell = moves_cell(drive, box);
   const double pressed = pressed_length(drive, box);
   const PressBody body = model.press_body(box, axis_in<Dim>(drive.part), (of_cell ? steps_behind : 1) * dt);

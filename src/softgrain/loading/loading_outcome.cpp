@@ -9,13 +9,13 @@ namespace {
 
 /// "stage 'press': stress_yy of 5e+06 Pa or packing_fraction 0.9", whatever ends a stage but times and
 /// strains.
-std::string asked_of(const Stage& stage, std::size_t number) {
+std::string asked_of(const Stage& stage, std::size_t number, int dimension) {
   const Until& until = stage.until;
   std::string text;
   const auto add = [&](const std::string& what) { text += (text.empty() ? "" : " or ") + what; };
   for (std::size_t p = 0; p < parts_with_stress; ++p)
     if (until.stress[p])
-      add(fmt::format("stress_{} of {:.3g} Pa", name_of(static_cast<Part>(p)), *until.stress[p]));
+      add(fmt::format("stress_{} of {:.3g} Pa", name_of(static_cast<Part>(p), dimension), *until.stress[p]));
   if (until.packing_fraction) add(fmt::format("packing_fraction {:.4g}", *until.packing_fraction));
   if (until.overlap) add(fmt::format("overlap {:.3g}", *until.overlap));
   if (until.rest) add(fmt::format("rest {:.3g}", *until.rest));
@@ -88,7 +88,7 @@ template <int Dim>
 LoadingOutcome LoadingOf<Dim>::outcome_of_limit() const {
   if (ended_ != End::limit) return {};
   const Stage& stage = stage_now();
-  std::string text = fmt::format("{} was not reached by strain {:.3g}", asked_of(stage, stage_),
+  std::string text = fmt::format("{} was not reached by strain {:.3g}", asked_of(stage, stage_, Dim),
                                  limit_of(stage, strains_at_stage())->strain);
   for (std::size_t p = 0; p < parts_with_stress; ++p)
     if (stage.until.stress[p]) text += fmt::format(": the largest stress was {:.3g} Pa", largest_[p]);
@@ -116,7 +116,7 @@ LoadingOutcome LoadingOf<Dim>::outcome_of_stresses() const {
     const Stage& stage = stages_[unkept_stage_];
     const std::string what = stage.key.empty()
                                  ? fmt::format("{}: the stress of {}", stage.title(unkept_stage_),
-                                               name_of(static_cast<Part>(unkept_part_)))
+                                               name_of(static_cast<Part>(unkept_part_), Dim))
                                  : std::string(stage.key);
     return {.completed = false,
             .shortfall = fmt::format("{} was not kept: over the second half of {} the stress was {}", what,
@@ -126,7 +126,7 @@ LoadingOutcome LoadingOf<Dim>::outcome_of_stresses() const {
   if (unreached_stage_ < 0) return {};
   const Stage& stage = stages_[unreached_stage_];
   const std::string what = stage.key.empty() ? fmt::format("{}: stress_{}", stage.title(unreached_stage_),
-                                                           name_of(static_cast<Part>(unreached_part_)))
+                                                           name_of(static_cast<Part>(unreached_part_), Dim))
                                              : std::string(stage.key);
   return {.completed = true,
           .shortfall = not_reached(what, *stage.until.stress[unreached_part_], unreached_part_)};

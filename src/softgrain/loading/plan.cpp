@@ -45,7 +45,7 @@ class Planner {
     speed_ = rate_ = {};
     for (const Drive& drive : stage.drives)
       for (int c = 0; c < 3; ++c) {
-        const double share = closing_share(drive.part, c, frame_.aspect, frame_.dimension);
+        const double share = frame_.closing_share(drive.part, c);
         if (drive.control == Control::velocity) speed_[c] += share * drive.value;
         if (drive.control == Control::rate) (frame_.is_shear(c) ? speed_ : rate_)[c] += share * drive.value;
       }
@@ -65,11 +65,15 @@ class Planner {
   /// All strain is taken to fall to the components as at the start.
   double time_to_fraction(double packing_fraction) {
     const std::array<double, 3> now = strains();
-    const double way = std::log(packing_fraction / frame_.packing_fraction) - now[0] - now[1];
-    const double yy = rate_[0] + speed_[0] / length(0), xx = rate_[1] + speed_[1] / length(1);
-    if (!(way > 0) || yy + xx <= 0) return way > 0 ? infinite : 0;
-    const int c = yy >= xx ? 0 : 1;
-    return time_to(c, now[c] + way * std::max(yy, xx) / (yy + xx), false);
+    double way = std::log(packing_fraction / frame_.packing_fraction), all = 0;
+    std::array<double, 3> rate{};
+    for (int k = 0; k < frame_.dimension; ++k) {
+      way -= now[k];
+      all += rate[k] = rate_[k] + speed_[k] / length(k);
+    }
+    if (!(way > 0) || all <= 0) return way > 0 ? infinite : 0;
+    const int c = static_cast<int>(std::max_element(rate.begin(), rate.end()) - rate.begin());
+    return time_to(c, now[c] + way * rate[c] / all, false);
   }
 
   void advance(double time) {
@@ -124,9 +128,9 @@ std::optional<StrainLimit> limit_of(const Stage& stage, const std::array<double,
   return std::nullopt;
 }
 
-double closing_share(Part part, int component, double aspect, int dimension) {
+double LoadingFrame::closing_share(Part part, int component) const {
   if (dimension == 3) {
-    const auto share = share_in<3>(part, aspect);
+    const auto share = shares<3>(part);
     return share[2 * static_cast<std::size_t>(component)] +
            share[2 * static_cast<std::size_t>(component) + 1];
   }

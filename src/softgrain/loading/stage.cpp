@@ -21,20 +21,21 @@ bool share_a_wall(Part a, Part b) {
 }
 
 /// What a stage lacks or has too much of, or "".
-std::string contradiction(const Stage& stage) {
+std::string contradiction(const Stage& stage, int dimension) {
   const auto& drives = stage.drives;
   for (std::size_t a = 0; a < drives.size(); ++a)
     for (std::size_t b = a + 1; b < drives.size(); ++b)
       if (share_a_wall(drives[a].part, drives[b].part))
-        return fmt::format("{} and {} both move one wall: give one of them", name_of(drives[a].part),
-                           name_of(drives[b].part));
+        return fmt::format("{} and {} both move one wall: give one of them",
+                           name_of(drives[a].part, dimension), name_of(drives[b].part, dimension));
   for (const Drive& drive : drives) {
     const bool swings = drive.control == Control::strain || drive.amplitude > 0;
     if (swings && drive.period <= 0)
-      return fmt::format("{} swings, so it needs a period > 0", name_of(drive.part));
-    if (drive.control == Control::stress && drive.part != Part::xy && drive.amplitude >= drive.value)
+      return fmt::format("{} swings, so it needs a period > 0", name_of(drive.part, dimension));
+    const bool shears = drive.part == Part::xy && dimension == 2;
+    if (drive.control == Control::stress && !shears && drive.amplitude >= drive.value)
       return fmt::format("{} would pull the grains: stress_amplitude must be below stress",
-                         name_of(drive.part));
+                         name_of(drive.part, dimension));
   }
   return "";
 }
@@ -88,10 +89,13 @@ int axis_of(Part part) { return part == Part::xx || part == Part::left || part =
 
 int component_of(Part part) { return part == Part::xy ? 2 : 1 - axis_of(part); }
 
-std::string_view name_of(Part part) {
+std::string_view name_of(Part part, int dimension) {
   constexpr std::array<std::string_view, number_of_parts> names{"yy",   "xx",    "bottom", "top",
                                                                 "left", "right", "xy",     "all walls"};
-  return names[static_cast<std::size_t>(part)];
+  constexpr std::array<std::string_view, 3> in_space{"zz", "yy", "xx"};
+  const bool is_pair = part == Part::yy || part == Part::xx || part == Part::xy;
+  return dimension == 3 && is_pair ? in_space[static_cast<std::size_t>(component_of(part))]
+                                   : names[static_cast<std::size_t>(part)];
 }
 
 double Drive::target(double time) const {
@@ -127,17 +131,17 @@ std::vector<Stage> without_repeats(const std::vector<Stage>& stages) {
   return all;
 }
 
-std::string fault_of(const Stage& stage) {
-  if (std::string why = contradiction(stage); !why.empty()) return why;
+std::string fault_of(const Stage& stage, int dimension) {
+  if (std::string why = contradiction(stage, dimension); !why.empty()) return why;
   if (std::string why = endless(stage); !why.empty()) return why;
   if (stage.repeat < 1) return "repeat must be 1 or more";
   if (!stage.repeat_from.empty() && stage.repeat == 1) return "repeat_from needs repeat = 2 or more";
   return "";
 }
 
-void check_stages(const std::vector<Stage>& stages) {
+void check_stages(const std::vector<Stage>& stages, int dimension) {
   for (std::size_t k = 0; k < stages.size(); ++k) {
-    const std::string why = fault_of(stages[k]);
+    const std::string why = fault_of(stages[k], dimension);
     require(why.empty(), "{}: {}", stages[k].title(k), why);
   }
   without_repeats(stages);

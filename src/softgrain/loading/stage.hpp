@@ -32,11 +32,12 @@ constexpr std::size_t parts_with_stress = 7;
 /// Share of the rate of a part that each wall makes along its normal, by BoxWall.
 std::array<double, 4> share_of(Part part, double aspect);
 /// The same of the walls of a box of Dim dimensions. In space, where the vertical axis is z, `yy` stands for
-/// the vertical pair, `xx` for the pair along y and `xy` for that along x: there is no shear yet.
+/// the vertical pair, `xx` for the pair along y and `xy` for that along x: there is no shear yet, and no side
+/// wall alone. aspect_y: depth over height.
 template <int Dim>
-std::array<double, 2 * Dim> share_in(Part part, double aspect) {
+std::array<double, 2 * Dim> share_in(Part part, double aspect, double aspect_y) {
   std::array<double, 2 * Dim> share{};
-  const auto plane = share_of(part, aspect);
+  const auto plane = share_of(part, Dim == 2 ? aspect : aspect_y);
   for (std::size_t w = 0; w < plane.size(); ++w) share[w] = plane[w];
   if constexpr (Dim == 3) share[4] = share[5] = part == Part::all ? 0.5 * aspect : part == Part::xy ? 0.5 : 0;
   return share;
@@ -51,8 +52,8 @@ template <int Dim>
 int axis_in(Part part) {
   return Dim == 2 ? axis_of(part) : Dim - 1 - component_of(part);
 }
-/// "yy", "top".
-std::string_view name_of(Part part);
+/// "yy", "top"; in space "zz", "yy" and "xx" are the vertical pair, that along y and that along x.
+std::string_view name_of(Part part, int dimension = 2);
 
 enum class Control {
   rest,
@@ -84,7 +85,7 @@ struct Drive {
 /// What ends a stage: the first that holds. Strains count from the start of the run, compression positive.
 struct Until {
   std::optional<double> time{};                                   ///< since the stage began [s]
-  std::array<std::optional<double>, 3> strain{};                  ///< yy, xx; xy: gamma
+  std::array<std::optional<double>, 3> strain{};                  ///< yy, xx; xy: gamma; in space zz, yy, xx
   std::array<std::optional<double>, parts_with_stress> stress{};  ///< by Part [Pa]
   std::optional<double> packing_fraction{};                       ///< Phi_0
   std::optional<double> overlap{};                                ///< mean, as the column overlap_mean
@@ -126,10 +127,10 @@ struct Stage {
 std::vector<Stage> without_repeats(const std::vector<Stage>& stages);
 
 /// What is wrong with a stage that contradicts itself, or that may never end; "" if nothing.
-std::string fault_of(const Stage& stage);
+std::string fault_of(const Stage& stage, int dimension = 2);
 
 /// Raises UsageError for the first stage with a fault.
-void check_stages(const std::vector<Stage>& stages);
+void check_stages(const std::vector<Stage>& stages, int dimension = 2);
 
 /// What the distance that walls have come together means as a strain.
 struct StrainMeasure {

@@ -7,6 +7,7 @@
 #include "softgrain/material/dilatation.hpp"
 #include "softgrain/material/lame.hpp"
 #include "softgrain/material/plane_flow.hpp"
+#include "softgrain/material/space_flow.hpp"
 #include "softgrain/material/volumetric.hpp"
 
 namespace softgrain {
@@ -40,7 +41,7 @@ struct Decay {
 /// Viscoelastic solid (theory (46b)-(46d)), a generalised Maxwell model of finite strain: Hencky's law of the
 /// moduli at once, of whose shear modulus the shares g_i relax with the times tau_i (Prony's series). Each
 /// branch has a spring and a dashpot, F = F_e F_v, with Hencky's energy mu g_i |e'|^2 in the spring and the
-/// flow e'/tau_i in the dashpot; pressure does not relax. In plane strain.
+/// flow e'/tau_i in the dashpot; pressure does not relax. In plane strain, or in space.
 struct Prony {
   static constexpr bool objective = true;
   static constexpr int most_branches = 4;
@@ -51,13 +52,16 @@ struct Prony {
   std::array<double, most_branches> tau{};  ///< [s]
 
   /// What a point remembers: U in C = U^T U at the end of the last step (11, 22, 12), and C_v^-1 of each
-  /// branch in the plane (11, 22, 12).
+  /// branch in the plane (11, 22, 12); in space F then, and F_v^-1 of each branch, row by row.
   template <int Dim, class T>
-  using State = std::array<T, 3 + 3 * most_branches>;
+  using State = std::array<T, (Dim == 2 ? 3 : 9) * (1 + most_branches)>;
   template <int Dim, class T>
   static State<Dim, T> undeformed() {
     State<Dim, T> state{};
-    for (std::size_t k = 0; k < state.size(); k += 3) state[k] = state[k + 1] = T(1.0);
+    if constexpr (Dim == 2)
+      for (std::size_t k = 0; k < state.size(); k += 3) state[k] = state[k + 1] = T(1.0);
+    else
+      for (std::size_t k = 0; k < state.size(); k += 9) state[k] = state[k + 4] = state[k + 8] = T(1.0);
     return state;
   }
   /// Nothing yields.
@@ -67,21 +71,20 @@ struct Prony {
   }
 
   /// Incremental potential [J/m^3 of the undeformed material] of a step of dt [s].
-  template <class T>
-  T energy(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
-    const PlaneTrial<T> whole = elastic(F);
+  template <int Dim, class T>
+  T energy(const Mat<Dim, T>& F, const State<Dim, T>& state, double dt) const {
+    const auto whole = elastic(F);
     T energy = 0.5 * bulk * whole.log_J * whole.log_J + lasting() * whole.square();
     for (int k = 0; k < branches; ++k) {
-      const Branch<T> step = branch(F, state, k, dt);
+      const auto step = branch(F, state, k, dt);
       energy += mu * g[at(k)] * step.decay.mean * step.trial.square();
     }
     return energy;
   }
   /// First Piola-Kirchhoff stress P [Pa], the derivative of the incremental potential.
-  template <class T>
-  Mat<2, T> stress(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
-    const PlaneTrial<T> whole = elastic(F);
-    Mat<2, T> P = softgrain::stress_of(whole, respond(whole, bulk, T(lasting()), T(0.0)));
+  template <int Dim, class T>
+  Mat<Dim, T> stress(const Mat<Dim, T>& F, const State<Dim, T>& state, double dt) const {
+    Mat<Dim, T> P = stress_at(elastic(F), bulk, T(lasting()));
     for (int k = 0; k < branches; ++k) P += stress_of(branch(F, state, k, dt), k);
     return P;
   }
@@ -91,41 +94,48 @@ struct Prony {
     const PlaneTrial<T> whole = elastic(F);
     Mat<4, T> A = tangent_of(whole, respond(whole, bulk, T(lasting()), T(0.0)));
     for (int k = 0; k < branches; ++k) {
-      const Branch<T> step = branch(F, state, k, dt);
+      const auto step = branch(F, state, k, dt);
       A += tangent_of(step.trial, respond(step.trial, 0, T(mu * g[at(k)] * step.decay.mean), T(0.0)));
     }
     return A;
   }
-  /// The state after a step that ends at F, and what the step dissipated.
   template <class T>
+  Mat<9, T> tangent(const Mat<3, T>& F, const State<3, T>& state, double dt) const {
+    Mat<9, T> A = tangent_of(elastic(F), bulk, T(lasting()), T(0.0));
+    for (int k = 0; k < branches; ++k) {
+      const auto step = branch(F, state, k, dt);
+      A += tangent_of(step.trial, 0, T(mu * g[at(k)] * step.decay.mean), T(0.0));
+    }
+    return A;
+  }
+  /// The state after a step that ends at F, and what the step dissipated.
+  template <int Dim, class T>
   struct Advanced {
-    State<2, T> state;
+    State<Dim, T> state;
     T dissipated;  ///< [J/m^3]
   };
-  template <class T>
-  Advanced<T> advance(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
-    Advanced<T> after = moved(F, state);
+  template <int Dim, class T>
+  Advanced<Dim, T> advance(const Mat<Dim, T>& F, const State<Dim, T>& state, double dt) const {
+    Advanced<Dim, T> after = moved(F, state);
     if (dt > 0)
       for (int k = 0; k < branches; ++k) relax(branch(F, state, k, dt), k, after);
     return after;
   }
   /// stress and advance at once: both begin with the same trial.
-  template <class T>
-  std::pair<Mat<2, T>, Advanced<T>> stress_and_advance(const Mat<2, T>& F, const State<2, T>& state,
-                                                       double dt) const {
-    const PlaneTrial<T> whole = elastic(F);
-    std::pair<Mat<2, T>, Advanced<T>> both{
-        softgrain::stress_of(whole, respond(whole, bulk, T(lasting()), T(0.0))), moved(F, state)};
+  template <int Dim, class T>
+  std::pair<Mat<Dim, T>, Advanced<Dim, T>> stress_and_advance(const Mat<Dim, T>& F,
+                                                              const State<Dim, T>& state, double dt) const {
+    std::pair<Mat<Dim, T>, Advanced<Dim, T>> both{stress_at(elastic(F), bulk, T(lasting())), moved(F, state)};
     for (int k = 0; k < branches; ++k) {
-      const Branch<T> step = branch(F, state, k, dt);
+      const auto step = branch(F, state, k, dt);
       both.first += stress_of(step, k);
       if (dt > 0) relax(step, k, both.second);
     }
     return both;
   }
   /// Elastic energy [J/m^3] of a point at F with this state, as it is.
-  template <class T>
-  T stored(const Mat<2, T>& F, const State<2, T>& state) const {
+  template <int Dim, class T>
+  T stored(const Mat<Dim, T>& F, const State<Dim, T>& state) const {
     return energy(F, state, 0);
   }
   /// Kirchhoff's stress across the plane [Pa].
@@ -134,11 +144,14 @@ struct Prony {
     const PlaneTrial<T> whole = elastic(F);
     T across = bulk * whole.log_J - 4.0 * lasting() * whole.d;
     for (int k = 0; k < branches; ++k) {
-      const Branch<T> step = branch(F, state, k, dt);
+      const auto step = branch(F, state, k, dt);
       across -= 4.0 * mu * g[at(k)] * step.decay.mean * step.trial.d;
     }
     return across;
   }
+
+  /// As it answers before anything relaxes: it does so within no time.
+  const Prony& without_flow() const { return *this; }
 
   /// Speed of pressure waves [m/s] in the unstrained material, before anything relaxes.
   double wave_speed(double density) const { return Lame{bulk - 2.0 / 3.0 * mu, mu}.wave_speed(density); }
@@ -169,16 +182,29 @@ struct Prony {
   static PlaneTrial<T> elastic(const Mat<2, T>& F) {
     return plane_trial(F, Vec<3, T>{{T(1.0), T(1.0), T(0.0)}});
   }
+  template <class T>
+  static SpaceTrial<T> elastic(const Mat<3, T>& F) {
+    return space_trial(F, identity<3, T>());
+  }
+  /// P of tau' = 2 shear e' and the pressure of `bulk_part`.
+  template <class T>
+  static Mat<2, T> stress_at(const PlaneTrial<T>& e, double bulk_part, const T& shear) {
+    return softgrain::stress_of(e, respond(e, bulk_part, shear, T(0.0)));
+  }
+  template <class T>
+  static Mat<3, T> stress_at(const SpaceTrial<T>& e, double bulk_part, const T& shear) {
+    return softgrain::stress_of(e, bulk_part, shear);
+  }
 
   /// A spring at F, its dashpot at rest since it relaxed by `decay.rest` at the F before.
-  template <class T>
+  template <class Trial, class T>
   struct Branch {
     Decay decay;
     T before;  ///< |e'|^2 at the start of the step
-    PlaneTrial<T> trial;
+    Trial trial;
   };
   template <class T>
-  Branch<T> branch(const Mat<2, T>& F, const State<2, T>& state, int k, double dt) const {
+  Branch<PlaneTrial<T>, T> branch(const Mat<2, T>& F, const State<2, T>& state, int k, double dt) const {
     const T* of_branch = &state[3 + 3 * at(k)];
     Vec<3, T> G{{of_branch[0], of_branch[1], of_branch[2]}};
     const Decay decay(dt / tau[at(k)]);
@@ -191,14 +217,30 @@ struct Prony {
     return {decay, before, plane_trial(F, G)};
   }
   template <class T>
-  Mat<2, T> stress_of(const Branch<T>& step, int k) const {
-    return softgrain::stress_of(step.trial,
-                                respond(step.trial, 0, T(mu * g[at(k)] * step.decay.mean), T(0.0)));
+  Branch<SpaceTrial<T>, T> branch(const Mat<3, T>& F, const State<3, T>& state, int k, double dt) const {
+    const auto matrix = [&](std::size_t row) {
+      Mat<3, T> m;
+      std::copy_n(&state[9 * row], 9, m.c.begin());
+      return m;
+    };
+    Mat<3, T> G = matrix(1 + at(k));
+    const Decay decay(dt / tau[at(k)]);
+    T before{};
+    if (dt > 0) {
+      const SpaceTrial<T> start = space_trial(matrix(0), G);
+      before = start.square();
+      G = flowed(start, T(decay.rest));
+    }
+    return {decay, before, space_trial(F, G)};
+  }
+  template <class Trial, class T>
+  auto stress_of(const Branch<Trial, T>& step, int k) const {
+    return stress_at(step.trial, 0, T(mu * g[at(k)] * step.decay.mean));
   }
   /// The state with C at the end of a step; the branches follow.
   template <class T>
-  static Advanced<T> moved(const Mat<2, T>& F, const State<2, T>& state) {
-    Advanced<T> after{state, T(0.0)};
+  static Advanced<2, T> moved(const Mat<2, T>& F, const State<2, T>& state) {
+    Advanced<2, T> after{state, T(0.0)};
     const T C_11 = F(0, 0) * F(0, 0) + F(1, 0) * F(1, 0), C_12 = F(0, 0) * F(0, 1) + F(1, 0) * F(1, 1);
     after.state[0] = sqrt(C_11);
     after.state[1] = determinant(F) / after.state[0];
@@ -206,10 +248,16 @@ struct Prony {
     return after;
   }
   template <class T>
-  void relax(const Branch<T>& step, int k, Advanced<T>& after) const {
+  static Advanced<3, T> moved(const Mat<3, T>& F, const State<3, T>& state) {
+    Advanced<3, T> after{state, T(0.0)};
+    std::copy(F.c.begin(), F.c.end(), after.state.begin());
+    return after;
+  }
+  template <class Trial, int Dim, class T>
+  void relax(const Branch<Trial, T>& step, int k, Advanced<Dim, T>& after) const {
     const Decay& decay = step.decay;
-    const Vec<3, T> G = flowed(step.trial, T(decay.mean));
-    std::copy(G.c.begin(), G.c.end(), &after.state[3 + 3 * at(k)]);
+    const auto G = flowed(step.trial, T(decay.mean));
+    std::copy(G.c.begin(), G.c.end(), &after.state[G.c.size() * (1 + at(k))]);
     after.dissipated +=
         mu * g[at(k)] *
         (decay.at_start * step.before + decay.at_end * decay.mean * decay.mean * step.trial.square());

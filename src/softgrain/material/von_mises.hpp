@@ -7,7 +7,7 @@
 #include "softgrain/material/flow_rule.hpp"
 #include "softgrain/material/lame.hpp"
 #include "softgrain/material/plane_flow.hpp"
-#include "softgrain/material/principal_stretches.hpp"
+#include "softgrain/material/space_flow.hpp"
 #include "softgrain/material/volumetric.hpp"
 
 namespace softgrain {
@@ -88,37 +88,31 @@ struct VonMises {
 
   /// In space: by the principal stretches of F_e.
   template <class T>
-  Mat<3, T> stress(const Mat<3, T>& F, const State<3, T>& state, double dt) const {
-    return stress_of(flow(F, state, dt).response) * transpose(inverse_plastic(state));  // dpsi/dF_e F_p^-T
+  [[gnu::always_inline]] Mat<3, T> stress(const Mat<3, T>& F, const State<3, T>& state, double dt) const {
+    const SpaceStep<T> step = flow(F, state, dt);
+    return stress_of(step.trial, bulk, mu * step.share);
   }
   template <class T>
   Mat<9, T> tangent(const Mat<3, T>& F, const State<3, T>& state, double dt) const {
-    const Mat<3, T> G = inverse_plastic(state);
-    const Mat<9, T> A_e = tangent_of(flow(F, state, dt).response);
-    // A_iJkL = (A_e)_iMkN G_JM G_LN, one index after the other.
-    Mat<9, T> half, A;
-    for (int row = 0; row < 9; ++row)
-      for (int k = 0; k < 3; ++k)
-        for (int l = 0; l < 3; ++l)
-          for (int n = 0; n < 3; ++n) half(row, 3 * k + l) += A_e(row, 3 * k + n) * G(l, n);
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        for (int column = 0; column < 9; ++column)
-          for (int m = 0; m < 3; ++m) A(3 * i + j, column) += half(3 * i + m, column) * G(j, m);
-    return A;
+    const SpaceStep<T> step = flow(F, state, dt);
+    const T turn = 1.0 - step.share - 3.0 * mu * step.flow.slope;
+    return tangent_of(step.trial, bulk, mu * step.share, mu * turn);
   }
   template <class T>
   Advanced<3, T> advance(const Mat<3, T>& F, const State<3, T>& state, double dt) const {
-    // F_p^-1 <- F_p^-1 exp(-gamma sum_a n_a v_a (x) v_a), gamma n = (1 - share) e'
+    return advanced(flow(F, state, dt), state);
+  }
+  template <class T>
+  std::pair<Mat<3, T>, Advanced<3, T>> stress_and_advance(const Mat<3, T>& F, const State<3, T>& state,
+                                                          double dt) const {
     const SpaceStep<T> step = flow(F, state, dt);
-    Mat<3, T> shrink;
-    for (int a = 0; a < 3; ++a) shrink(a, a) = exp((step.share - 1.0) * step.trial.deviator[a]);
-    const Mat<3, T>& v = step.response.frame.v;
-    const Mat<3, T> G = inverse_plastic(state) * (v * shrink * transpose(v));
-    Advanced<3, T> after{state, step.flow.dissipated};
-    std::copy(G.c.begin(), G.c.end(), after.state.begin());
-    after.state.back() = state.back() + step.flow.increment;
-    return after;
+    return {stress_of(step.trial, bulk, mu * step.share), advanced(step, state)};
+  }
+
+  /// As it answers before anything flows.
+  VonMises without_flow() const {
+    constexpr double never = 1e200;
+    return {bulk, mu, {.yield_stress = never}};
   }
 
   /// Speed of pressure waves [m/s] in the unstrained material.
@@ -152,40 +146,32 @@ struct VonMises {
              state[3] + step.flow.increment},
             step.flow.dissipated};
   }
-  /// In space, of the trial.
-  template <class T>
-  struct SpaceTrial {
-    PrincipalFrame<T> frame;
-    Vec<3, T> e, deviator;
-    T log_J;
-    T square() const { return dot(deviator, deviator); }
-  };
   template <class T>
   struct SpaceStep {
     SpaceTrial<T> trial;
     FlowRule::Flow<T> flow;
     T share;
     T stored;
-    PrincipalResponse<T> response;
   };
-
   template <class T>
-  static Mat<3, T> inverse_plastic(const State<3, T>& state) {
-    Mat<3, T> G;
-    std::copy(state.begin(), state.begin() + 9, G.c.begin());
-    return G;
+  static Advanced<3, T> advanced(const SpaceStep<T>& step, const State<3, T>& state) {
+    const Mat<3, T> G = flowed(step.trial, step.share);
+    const auto flows = step.flow.increment > T(0.0);
+    Advanced<3, T> after{state, step.flow.dissipated};
+    for (std::size_t k = 0; k < 9; ++k) after.state[k] = select(flows, G.c[k], state[k]);
+    after.state.back() = state.back() + step.flow.increment;
+    return after;
   }
+
   template <class T>
   [[gnu::always_inline]] static PlaneTrial<T> trial(const Mat<2, T>& F, const State<2, T>& state) {
     return plane_trial(F, Vec<3, T>{{state[0], state[1], state[2]}});
   }
   template <class T>
   static SpaceTrial<T> trial(const Mat<3, T>& F, const State<3, T>& state) {
-    SpaceTrial<T> trial{principal_frame(F * inverse_plastic(state)), {}, {}, {}};
-    for (int a = 0; a < 3; ++a) trial.e[a] = log(trial.frame.stretch[a]);
-    trial.log_J = trial.e[0] + trial.e[1] + trial.e[2];
-    for (int a = 0; a < 3; ++a) trial.deviator[a] = trial.e[a] - (1.0 / 3.0) * trial.log_J;
-    return trial;
+    Mat<3, T> G;
+    std::copy(state.begin(), state.begin() + 9, G.c.begin());
+    return space_trial(F, G);
   }
 
   /// share, flow and energy of a trial, in the plane or in space.
@@ -207,22 +193,9 @@ struct VonMises {
     return step;
   }
   template <class T>
-  SpaceStep<T> flow(const Mat<3, T>& F, const State<3, T>& state, double dt) const {
-    SpaceStep<T> step{.trial = trial(F, state), .flow = {}, .share = {}, .stored = {}, .response = {}};
+  [[gnu::always_inline]] SpaceStep<T> flow(const Mat<3, T>& F, const State<3, T>& state, double dt) const {
+    SpaceStep<T> step{.trial = trial(F, state), .flow = {}, .share = {}, .stored = {}};
     flow_back(step, state[9], dt);
-    const SpaceTrial<T>& trial = step.trial;
-    // dtau/de = bulk 1 (x) 1 + 2 mu (share dev + turn n (x) n), n = e'/|e'|
-    const T turn = 1.0 - step.share - 3.0 * mu * step.flow.slope;
-    const T inverse = 1.0 / max(trial.square(), T(1e-20));
-    Mat<3, T> D;
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b)
-        D(a, b) = bulk + 2.0 * mu *
-                             (step.share * ((a == b) - 1.0 / 3.0) +
-                              turn * inverse * trial.deviator[a] * trial.deviator[b]);
-    step.response.frame = trial.frame;
-    differentiate(step.response, trial.e, mu * step.share, (bulk - 2.0 / 3.0 * mu * step.share) * trial.log_J,
-                  D);
     return step;
   }
 };

@@ -124,7 +124,7 @@ constexpr std::array table{
     Column{"kinetic_energy", "J/m", every_run, R"($\sum\tfrac12 m v^2$, spins included (29))", ENERGY(kinetic)},
     Column{"attraction_energy", "J/m", bonded, R"($\sum U$ over pairs in reach (15))", NUMBER("attraction_energy")},
     Column{"elastic_energy", "J/m", elastic, "(43), summed over the cells", NUMBER("elastic_energy")},
-    Column{"adhesion_energy", "J/m", elastic, R"($\sum l\,\Phi(g)$ of surfaces that adhere, below 0 (77); it belongs to the budget as the elastic energy does; with adhesion only)", NUMBER("adhesion_energy")},
+    Column{"adhesion_energy", "J/m", elastic, R"($\sum l\,\Phi(g)$ of surfaces that adhere, below 0 (78); it belongs to the budget as the elastic energy does; with adhesion only)", NUMBER("adhesion_energy")},
     Column{"attraction_ratio", "", elastic, "sum of the attractions over the sum of the repulsions at all contacts: 1 where grains hold by themselves, below while they are pressed, above while they are pulled apart; with adhesion only", NUMBER("attraction_ratio")},
     Column{"wall_work", "J/m", every_run, "done on the grains by moving walls, since the start (29)", ENERGY(wall_work)},
     Column{"gravity_work", "J/m", boxes, R"(done by gravity, $\sum m\,\mathbf g\cdot\Delta\mathbf x$, since the start; with gravity only)", NUMBER("gravity_work")},

@@ -1,77 +1,32 @@
 #include "softgrain/rigid/narrow_sweeps.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
+
+#include "softgrain/rigid/narrow_rows.hpp"
 
 namespace softgrain {
 namespace {
 
-using Floats = Narrow::Floats;
 using Integers = int __attribute__((vector_size(32)));
-using Pairs = double __attribute__((vector_size(32)));  // of floats, moved as one
 
-struct FloatColumns {
-  Floats x, y;
-};
-
-struct WideColumns {
-  Wide x, y;
-};
-WideColumns load_wide_columns(const Vec<2>* rows) {
-  const LaneColumns low = load_columns(rows), high = load_columns(rows + lane_count);
-  return {{low.x, high.x}, {low.y, high.y}};
-}
-
-template <class Row>
-double pair_at(const Row& row) {
-  double pair;
-  static_assert(sizeof row == sizeof pair);
-  std::memcpy(&pair, &row, sizeof pair);
-  return pair;
-}
-
-/// Rows index[0..7], as columns.
-template <class Row>
-FloatColumns gather_columns(const Row* rows, const int* index) {
-  const auto four = [&](int k, int l, int m, int n) {
-    return reinterpret_cast<Floats>(Pairs{pair_at(rows[index[k]]), pair_at(rows[index[l]]),
-                                          pair_at(rows[index[m]]), pair_at(rows[index[n]])});
-  };
-  const Floats rows0145 = four(0, 1, 4, 5), rows2367 = four(2, 3, 6, 7);
-  return {__builtin_shufflevector(rows0145, rows2367, 0, 2, 8, 10, 4, 6, 12, 14),
-          __builtin_shufflevector(rows0145, rows2367, 1, 3, 9, 11, 5, 7, 13, 15)};
-}
-
-/// The inverse of gather_columns: all indices must differ, or hold the same row.
-template <class Row>
-void scatter_columns(const FloatColumns& columns, Row* rows, const int* index) {
-  const auto store = [&](int lane, double pair) { std::memcpy(&rows[index[lane]], &pair, sizeof pair); };
-  const auto rows0145 =
-      reinterpret_cast<Pairs>(__builtin_shufflevector(columns.x, columns.y, 0, 8, 1, 9, 4, 12, 5, 13));
-  const auto rows2367 =
-      reinterpret_cast<Pairs>(__builtin_shufflevector(columns.x, columns.y, 2, 10, 3, 11, 6, 14, 7, 15));
-  store(0, rows0145[0]), store(1, rows0145[1]), store(2, rows2367[0]), store(3, rows2367[1]);
-  store(4, rows0145[2]), store(5, rows0145[3]), store(6, rows2367[2]), store(7, rows2367[3]);
-}
-
-Floats gather(const float* numbers, const int* index) {
-  Floats lanes;
-  for (int lane = 0; lane < Wide::size; ++lane) lanes[lane] = numbers[index[lane]];
-  return lanes;
-}
-void scatter(Floats lanes, float* numbers, const int* index) {
-  for (int lane = 0; lane < Wide::size; ++lane) numbers[index[lane]] = lanes[lane];
+/// p <- p + b (p - p'), and p' becomes the p of now. Returns the change.
+[[gnu::always_inline]] inline Narrow::Floats go_ahead(Narrow::Floats& p, Narrow::Floats& before, float b) {
+  const Narrow::Floats last = p;
+  p += b * (p - before);
+  before = last;
+  return p - last;
 }
 
 }  // namespace
 
 /// Velocities of the bodies a and b of eight contacts, and the impulses that change them.
 struct NarrowSweeps::Bodies {
-  Bodies(Velocity* velocity, const Eight& contact)
+  [[gnu::always_inline]] Bodies(Velocity* velocity, const Eight& contact)
       : rows(velocity), of(contact), a(gather_columns(rows, of.a)), b(gather_columns(rows, of.b)) {}
 
   /// v_a -= P/m_a, v_b += P/m_b.
-  void apply(Floats P_x, Floats P_y) {
+  [[gnu::always_inline]] void apply(Floats P_x, Floats P_y) {
     a.x -= of.inverse_a * P_x, a.y -= of.inverse_a * P_y;
     b.x += of.inverse_b * P_x, b.y += of.inverse_b * P_y;
     scatter_columns(a, rows, of.a);
@@ -83,46 +38,16 @@ struct NarrowSweeps::Bodies {
   FloatColumns a, b;
 };
 
-NarrowSweeps::System::System(NarrowSweeps& sweeps, const RigidParticles<2>& particles,
-                             const RigidContacts<2>& contacts, std::span<const double> offset)
-    : sweeps_(sweeps), contacts_(contacts), offset_(offset), inertia_ratio_(particles.inertia_ratio) {}
-
-Mat<2> NarrowSweeps::System::delassus_block(int contact) const {
-  const double W_nn = contacts_.inverse_mass_a[contact] + contacts_.inverse_mass_b[contact];
-  return Mat<2>::diagonal({W_nn, (1 + inertia_ratio_) * W_nn});
-}
-
-Vec<2> NarrowSweeps::System::relative_velocity(int contact) const {
-  const int a = contacts_.body_a[contact], b = contacts_.body_b[contact];
-  const Velocity &v_a = sweeps_.velocity_[a], &v_b = sweeps_.velocity_[b];
-  const Vec<2> along = Vec<2>{static_cast<double>(v_b.x) - v_a.x, static_cast<double>(v_b.y) - v_a.y} +
-                       contacts_.image_velocity(contact);
-  const Vec<2>& n = contacts_.normal[contact];
-  return {dot(n, along) + offset_[contact],
-          dot(perpendicular(n), along) - (static_cast<double>(sweeps_.spin_[a]) + sweeps_.spin_[b])};
-}
-
-void NarrowSweeps::System::apply_impulse(int contact, const Vec<2>& dp) {
-  const Vec<2>& n = contacts_.normal[contact];
-  const Vec<2> P = dp[0] * n + dp[1] * perpendicular(n);
-  const auto give = [&](int body, double inverse_mass, double sign) {
-    Velocity& v = sweeps_.velocity_[body];
-    v.x += static_cast<float>(sign * inverse_mass * P[0]);
-    v.y += static_cast<float>(sign * inverse_mass * P[1]);
-    sweeps_.spin_[body] -= static_cast<float>(inertia_ratio_ * inverse_mass * dp[1]);
-  };
-  give(contacts_.body_a[contact], contacts_.inverse_mass_a[contact], -1);
-  give(contacts_.body_b[contact], contacts_.inverse_mass_b[contact], 1);
-}
-
 void NarrowSweeps::turn(const Eight& c, Floats s_a, Floats s_b, Floats p_t) {
   scatter(s_a - inertia_ratio_ * c.inverse_a * p_t, spin_.data(), c.a);
   scatter(s_b - inertia_ratio_ * c.inverse_b * p_t, spin_.data(), c.b);
 }
 
-/// Per contact: reads 36 B of contact and 16 B of velocities, writes 4 B and 16 B.
-template <bool Measured>
-void NarrowSweeps::relax(Eight& c, LaneViolation<Floats>& violation) {
+/// Starts from y = p + b (p - p'), p' the impulse before. Per contact: reads 40 B of contact and 16 B of
+/// velocities, writes 8 B and 16 B.
+template <bool Ahead, bool Measured>
+void NarrowSweeps::relax(Eight& c, float b, LaneViolation<Floats>& violation) {
+  if constexpr (Ahead) go_ahead(c.p_n, c.p_n_before, b);
   Bodies bodies(velocity_.data(), c);
   // u_n = n . (v_b - v_a) + q_n
   const Floats u_n = c.n_x * (bodies.b.x - bodies.a.x) + c.n_y * (bodies.b.y - bodies.a.y) + c.offset;
@@ -133,8 +58,9 @@ void NarrowSweeps::relax(Eight& c, LaneViolation<Floats>& violation) {
   if constexpr (Measured) violation.add(Vec<1, Floats>{dp * (c.inverse_a + c.inverse_b)}, p_n);
 }
 
-template <bool Measured>
-void NarrowSweeps::relax(FrictionalEight& c, LaneViolation<Floats>& violation) {
+template <bool Ahead, bool Measured>
+void NarrowSweeps::relax(FrictionalEight& c, float b, LaneViolation<Floats>& violation) {
+  if constexpr (Ahead) go_ahead(c.p_n, c.p_n_before, b), go_ahead(c.p_t, c.p_t_before, b);
   Bodies bodies(velocity_.data(), c);
   const float kappa = inertia_ratio_;
   const Floats s_a = gather(spin_.data(), c.a), s_b = gather(spin_.data(), c.b);
@@ -155,23 +81,88 @@ void NarrowSweeps::relax(FrictionalEight& c, LaneViolation<Floats>& violation) {
   }
 }
 
-template <bool Measured>
-Violation NarrowSweeps::sweep_block(Block& block) {
+template <bool Ahead, bool Measured>
+Violation NarrowSweeps::sweep_contacts(Block& block, float b) {
   LaneViolation<Floats> violation;
-  for (Eight& contact : block.frictionless.eights) relax<Measured>(contact, violation);
-  for (FrictionalEight& contact : block.frictional.eights) relax<Measured>(contact, violation);
+  for (Eight& contact : block.frictionless.eights) relax<Ahead, Measured>(contact, b, violation);
+  for (FrictionalEight& contact : block.frictional.eights) relax<Ahead, Measured>(contact, b, violation);
   return Measured ? violation.total(relaxation_) : Violation{};
+}
+
+/// v <- v + b (v'' - v'), where the block's own contacts made v'' of v' in its last turn. Spins follow where
+/// they matter to them.
+Violation NarrowSweeps::sweep_block(int k, double ahead, bool measured) {
+  Block& block = blocks_[listed_[k]];
+  const auto b = static_cast<float>(ahead);
+  const auto [begin, end] = block.bodies;
+  const bool spins = !block.frictional.eights.empty();
+  const auto go_ahead = [&](auto* now, auto* start, const auto* last, const auto& add) {
+    for (int i = begin; i < end; ++i) {
+      const auto at = now[i];
+      if (b > 0) add(now[i], start[i], last[i]);
+      start[i] = at;
+    }
+  };
+  go_ahead(velocity_.data(), start_.data(), end_.data(),
+           [b](Velocity& v, const Velocity& start, const Velocity& last) {
+             v.x += b * (last.x - start.x), v.y += b * (last.y - start.y);
+           });
+  if (spins)
+    go_ahead(spin_.data(), spin_start_.data(), spin_end_.data(),
+             [b](float& s, float start, float last) { s += b * (last - start); });
+  const Violation violation =
+      measured ? sweep_contacts<true, true>(block, b) : sweep_contacts<true, false>(block, b);
+  std::copy(velocity_.begin() + begin, velocity_.begin() + end, end_.begin() + begin);
+  if (spins) std::copy(spin_.begin() + begin, spin_.begin() + end, spin_end_.begin() + begin);
+  block.turn = sweeps_;
+  return violation;
+}
+
+void NarrowSweeps::go_ahead_between(double ahead) {
+  if (listed_.empty()) return;
+  const auto b = static_cast<float>(ahead);
+  Block& between = blocks_[listed_.back()];
+  for (Eight& c : between.frictionless.eights) {
+    const Floats dp = go_ahead(c.p_n, c.p_n_before, b);
+    if (b > 0) Bodies(velocity_.data(), c).apply(dp * c.n_x, dp * c.n_y);
+  }
+  for (FrictionalEight& c : between.frictional.eights) {
+    const Floats dp_n = go_ahead(c.p_n, c.p_n_before, b), dp_t = go_ahead(c.p_t, c.p_t_before, b);
+    if (b <= 0) continue;
+    Bodies(velocity_.data(), c).apply(dp_n * c.n_x - dp_t * c.n_y, dp_n * c.n_y + dp_t * c.n_x);
+    turn(c, gather(spin_.data(), c.a), gather(spin_.data(), c.b), dp_t);
+  }
+}
+
+Violation NarrowSweeps::sweep_between(bool measured) {
+  if (listed_.empty()) return {};
+  Block& between = blocks_[listed_.back()];
+  return measured ? sweep_contacts<false, true>(between, 0) : sweep_contacts<false, false>(between, 0);
+}
+
+void NarrowSweeps::end_sweep() {
+  for (const int list : listed_) blocks_[list].moved = 0;
+  for (Touched& touched : touched_) {
+    Block& block = blocks_[touched.list];
+    const Velocity& v = velocity_[touched.body];
+    if (block.turn == sweeps_) {
+      touched.velocity = v;
+      touched.spin = spin_[touched.body];
+      continue;
+    }
+    const float dx = v.x - touched.velocity.x, dy = v.y - touched.velocity.y;
+    const float turned = block.frictional.eights.empty() ? 0 : std::abs(spin_[touched.body] - touched.spin);
+    block.moved = std::max(block.moved, 2 * (std::sqrt(dx * dx + dy * dy) + turned));
+  }
+  ++sweeps_;
 }
 
 Violation NarrowSweeps::sweep(bool measured) {
   std::vector<Violation> found(listed_.size());
-  for_each_block(static_cast<int>(listed_.size()), [&](int k) {
-    Block& block = blocks_[listed_[k]];
-    found[k] = measured ? sweep_block<true>(block) : sweep_block<false>(block);
-  });
+  parallel_for(blocks(), [&](int k) { found[k] = sweep_block(k, 0, measured); });
   Violation violation;
   for (const Violation& of_block : found) violation += of_block;
-  return violation;
+  return violation += sweep_between(measured);
 }
 
 /// Each Eight takes the contacts that follow until one shares a particle with those before.
@@ -220,8 +211,9 @@ void NarrowSweeps::load(const RigidContacts<2>& contacts, std::span<const double
       const auto mine = Integers{0, 1, 2, 3, 4, 5, 6, 7} < count;
       next.n_x = Narrow(n.x).lanes, next.n_y = Narrow(n.y).lanes;
       next.offset = Narrow(load_wide(&offset[c])).lanes;
-      next.p_n = mine ? Narrow(p.x).lanes : Floats{};
-      if constexpr (std::is_same_v<AnyEight, FrictionalEight>) next.p_t = mine ? Narrow(p.y).lanes : Floats{};
+      next.p_n = next.p_n_before = mine ? Narrow(p.x).lanes : Floats{};
+      if constexpr (std::is_same_v<AnyEight, FrictionalEight>)
+        next.p_t = next.p_t_before = mine ? Narrow(p.y).lanes : Floats{};
     } else {
       for (int lane = 0; lane < count; ++lane) {
         next.n_x[lane] = static_cast<float>(contacts.normal[c + lane][0]);
@@ -231,6 +223,8 @@ void NarrowSweeps::load(const RigidContacts<2>& contacts, std::span<const double
         if constexpr (std::is_same_v<AnyEight, FrictionalEight>)
           next.p_t[lane] = static_cast<float>(contacts.impulse[c + lane][1]);
       }
+      next.p_n_before = next.p_n;
+      if constexpr (std::is_same_v<AnyEight, FrictionalEight>) next.p_t_before = next.p_t;
     }
     Bodies bodies(velocity_.data(), next);
     if constexpr (std::is_same_v<AnyEight, FrictionalEight>) {
@@ -242,26 +236,6 @@ void NarrowSweeps::load(const RigidContacts<2>& contacts, std::span<const double
   }
 }
 
-void NarrowSweeps::take_bodies(const RigidParticles<2>& particles, const RigidContacts<2>& contacts,
-                               double relaxation) {
-  bodies_ = static_cast<int>(particles.velocity.size());
-  if (relaxation_ != static_cast<float>(relaxation)) blocks_.clear();
-  relaxation_ = static_cast<float>(relaxation);
-  inertia_ratio_ = static_cast<float>(particles.inertia_ratio);
-  blocks_.resize(contacts.blocks.empty() ? 0 : contacts.blocks.back().list + 1);
-  listed_.clear();
-  for (const ContactBlock& block : contacts.blocks) listed_.push_back(block.list);
-  velocity_.resize(bodies_ + blocks_.size());
-  spin_.resize(bodies_ + blocks_.size());
-  parallel_ranges(bodies_, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      const Vec<2>& v = particles.velocity[i];
-      velocity_[i] = {static_cast<float>(v[0]), static_cast<float>(v[1])};
-      spin_[i] = static_cast<float>(particles.spin[i][0]);
-    }
-  });
-}
-
 void NarrowSweeps::take_contacts(const RigidContacts<2>& contacts, const ContactBlock& listed,
                                  std::span<const double> offset) {
   Block& block = blocks_[listed.list];
@@ -270,6 +244,11 @@ void NarrowSweeps::take_contacts(const RigidContacts<2>& contacts, const Contact
     fill(contacts, listed.frictionless, begin, idle, block.frictionless);
     fill(contacts, listed.frictional, begin, idle, block.frictional);
     block.made = listed.made;
+    const bool inside = listed.list != listed_.back();
+    if (inside)
+      take_range(contacts, listed, block);
+    else
+      take_touched(contacts, listed);
   }
   velocity_[idle] = {};
   spin_[idle] = 0;

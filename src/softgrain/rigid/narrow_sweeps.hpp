@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -6,6 +7,7 @@
 #include "softgrain/math/narrow.hpp"
 #include "softgrain/rigid/contact_blocks.hpp"
 #include "softgrain/rigid/contacts.hpp"
+#include "softgrain/rigid/neighbours.hpp"
 #include "softgrain/rigid/particles.hpp"
 
 namespace softgrain {
@@ -30,8 +32,17 @@ class NarrowSweeps {
     });
   }
 
-  /// One sweep. The violation is counted only if `measured`.
+  /// One sweep of all blocks. The violation is counted only if `measured`.
   Violation sweep(bool measured);
+
+  // As a BlockSystem; sweep_between leaves out the contacts that no block sweeps, and end_sweep closes each
+  // sweep.
+  int blocks() const { return std::max(static_cast<int>(listed_.size()) - 1, 0); }
+  Violation sweep_block(int block, double ahead, bool measured);
+  void go_ahead_between(double ahead);
+  Violation sweep_between(bool measured);
+  void end_sweep();
+  double moved(int block) const { return blocks_[listed_[block]].moved; }
 
   /// As a ContactSystem, for the contacts that no block sweeps (ContactBlock::pressed, crossing): u under all
   /// impulses so far, with `offset` as in start, and what an impulse does.
@@ -51,10 +62,10 @@ class NarrowSweeps {
   /// Contacts that share no particle. Lanes left over hold a contact of a body at rest with itself.
   struct Eight {
     int a[eight], b[eight];
-    Floats n_x, n_y, inverse_a, inverse_b, gain, offset, p_n;  // gain: omega / W_nn
+    Floats n_x, n_y, inverse_a, inverse_b, gain, offset, p_n, p_n_before;  // gain: omega / W_nn
   };
   struct FrictionalEight : Eight {
-    Floats friction, p_t;
+    Floats friction, p_t, p_t_before;
   };
   /// The contacts begin .. begin + count - 1 of a block are an Eight.
   struct Place {
@@ -70,6 +81,16 @@ class NarrowSweeps {
     int made = -1;
     Batch<Eight> frictionless;
     Batch<FrictionalEight> frictional;
+    GrainRange bodies{};  // of a grain
+    int turn = 0;         // the last sweep of it
+    float moved = 0;      // [m/s]
+  };
+  /// A body of a grain with contacts between grains, as it was at the end of the sweep that had its grain's
+  /// last turn.
+  struct Touched {
+    int body, list;
+    Velocity velocity{};
+    float spin = 0;
   };
   struct Bodies;
 
@@ -84,18 +105,24 @@ class NarrowSweeps {
             Batch<AnyEight>& batch);
   /// ds = -kappa p_t/m on both bodies, whose spins are s_a and s_b.
   void turn(const Eight& contact, Floats s_a, Floats s_b, Floats p_t);
-  template <bool Measured>
-  void relax(Eight& contact, LaneViolation<Floats>& violation);
-  template <bool Measured>
-  void relax(FrictionalEight& contact, LaneViolation<Floats>& violation);
-  template <bool Measured>
-  Violation sweep_block(Block& block);
+  void take_range(const RigidContacts<2>& contacts, const ContactBlock& listed, Block& block);
+  void take_touched(const RigidContacts<2>& contacts, const ContactBlock& between);
+  template <bool Ahead, bool Measured>
+  void relax(Eight& contact, float b, LaneViolation<Floats>& violation);
+  template <bool Ahead, bool Measured>
+  void relax(FrictionalEight& contact, float b, LaneViolation<Floats>& violation);
+  template <bool Ahead, bool Measured>
+  Violation sweep_contacts(Block& block, float b);
 
   std::vector<Block> blocks_;       // by ContactBlock::list
   std::vector<int> listed_;         // those that have contacts, in the order of the sweep
   std::vector<Velocity> velocity_;  // of the bodies, then of one at rest for each block
   std::vector<float> spin_;
-  int bodies_ = 0;
+  std::vector<Velocity> start_, end_;  // of the bodies of grains in the last turn of their block
+  std::vector<float> spin_start_, spin_end_;
+  std::vector<int> list_of_;  // of bodies; -1: no grain's
+  std::vector<Touched> touched_;
+  int bodies_ = 0, sweeps_ = 0;
   float relaxation_ = 1, inertia_ratio_ = 2;
 };
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "softgrain/contact/extrapolate.hpp"
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/math/lanes.hpp"
 #include "softgrain/rigid/contact_blocks.hpp"
 #include "softgrain/rigid/lane_sweep.hpp"
@@ -135,6 +137,19 @@ Violation RigidContactSystem<Dim>::sweep(std::span<Vec<Dim>> impulse, std::span<
   for (int c = contacts_.first_crossing(); c < size(); ++c)
     relax_contact(c, impulse[c], friction[c], options.relaxation, crossing);
   return violation += crossing.total(options.relaxation);
+}
+
+template <int Dim>
+void RigidContactSystem<Dim>::extrapolate(double b) {
+  velocity_before_.resize(particles_.velocity.size());
+  spin_before_.resize(particles_.spin.size());
+  parallel_ranges(static_cast<int>(velocity_before_.size()), [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      softgrain::extrapolate(particles_.velocity[i], velocity_before_[i], b);
+      softgrain::extrapolate(particles_.spin[i], spin_before_[i], b);
+    }
+  });
+  if (pushed_) pushed_->extrapolate(b);
 }
 
 template <int Dim>

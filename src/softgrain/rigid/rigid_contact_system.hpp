@@ -64,6 +64,8 @@ class RigidContactSystem {
   /// plane; the same law as the plain sweep, and the same bits on any number of threads.
   Violation sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
                   const SolverOptions& options);
+  /// v <- v + b (v - v'), also spins and pushed bodies, v' those when this was last called.
+  void extrapolate(double b);
   /// Sweeps then move these bodies too. Keeps a reference.
   void push(PushedBodies& bodies) { pushed_ = &bodies; }
 
@@ -79,6 +81,8 @@ class RigidContactSystem {
   const RigidContacts<Dim>& contacts_;
   std::span<const double> offset_;
   PushedBodies* pushed_ = nullptr;
+  std::vector<Vec<Dim>> velocity_before_;
+  std::vector<Spin<Dim>> spin_before_;
 };
 
 }  // namespace softgrain

@@ -168,39 +168,6 @@ SolverReport RigidDynamics<Dim>::solve(double dt) {
   return report;
 }
 
-template <int Dim>
-SolverReport RigidDynamics<Dim>::solve_in_single_precision(RigidContactSystem<Dim>& system,
-                                                           const SolverOptions& solver, double dt) {
-  SolverReport report;
-  if constexpr (Dim == 2) {
-    narrow_.start(
-        particles, contacts, [&](int begin, int end) { prepare(begin, end, dt); }, offset_,
-        solver.relaxation);
-    NarrowSweeps::System pressed_system(narrow_, particles, contacts, offset_);
-    PushedBodies pressed = pressed_walls(dt);
-    for (const Pushing& of : pressed.contacts)
-      pressed_system.apply_impulse(of.contact, contacts.impulse[of.contact]);
-    for (int c = contacts.first_crossing(); c < contacts.size(); ++c)
-      pressed_system.apply_impulse(c, contacts.impulse[c]);
-    const auto sweep = [&](bool measured) {
-      Violation violation = narrow_.sweep(measured);
-      pressed.sweep<2>(pressed_system, contacts.impulse, contacts.friction, solver.relaxation, violation);
-      for (int c = contacts.first_crossing(); c < contacts.size(); ++c)
-        nlgs_update<2>(pressed_system, c, contacts.impulse[c], contacts.friction[c], solver.relaxation,
-                       violation);
-      return violation;
-    };
-    report = repeat_sweeps(sweep, solver.velocity_scale, solver);
-    for_each_block(static_cast<int>(contacts.blocks.size()), [&](int k) {
-      narrow_.read_impulses(contacts.blocks[k], contacts.impulse);
-      system.apply_impulses(k, contacts.impulse);
-      overlaps_[k] = overlaps_of(contacts.blocks[k]);
-    });
-    move_presses(dt);
-  }
-  return report;
-}
-
 /// With v_m = (v + v+)/2, also of a wall: m/2 (v+^2 - v^2) = v_m . (dt F + H p); a wall's share is p against
 /// its own velocity.
 template <int Dim>

@@ -13,14 +13,16 @@ namespace softgrain {
 /// A box with corner (0, 0).
 template <int Dim>
 struct BoxSampleOf {
-  double width = 0, height = 0;     ///< [m]; in space the base is a square of that width
+  double width = 0, height = 0;     ///< [m]
   std::array<bool, Dim> repeats{};  ///< along x, y; else there are walls
-  std::vector<PlacedGrainOf<Dim>> grains;
+  std::vector<PlacedGrainOf<Dim>> grains{};
+  double depth = 0;  ///< in space along y [m]; 0: as the width
 
   Vec<Dim> size() const {
-    Vec<Dim> lengths;
-    for (int k = 0; k < Dim; ++k) lengths[k] = k == Dim - 1 ? height : width;
-    return lengths;
+    if constexpr (Dim == 2)
+      return {width, height};
+    else
+      return {width, depth > 0 ? depth : width, height};
   }
 };
 using BoxSample = BoxSampleOf<2>;
@@ -37,7 +39,7 @@ struct BoxSampleOptions {
   std::vector<GrainsOfKind> kinds{};  ///< instead of those two: one kind after the other, their places mixed
   double packing_fraction = 0.7;      ///< of the undeformed grains in the box
   double aspect = 1;                  ///< width over height of the box
-  std::array<bool, 2> repeats{};      ///< along x, y
+  std::array<bool, 3> repeats{};      ///< along x, y, and z in space
   double clearance = 0.02;  ///< free distance round each grain, over its radius, where there is room for it
   std::uint64_t seed = 1;
 };
@@ -48,17 +50,20 @@ struct BoxSampleOptions {
 /// is found, if none of them works: few grains do not fill 0.7 of every box (two equal ones fill 0.54 of a
 /// square).
 BoxSample sample_box(const BoxSampleOptions& given);
-/// The same of spheres, turned at random, between six walls.
+/// The same of spheres, turned at random.
 BoxSampleOf<3> sample_solid_box(const BoxSampleOptions& given);
+/// How the i-th sphere of a sample is turned.
+Mat<3> turn_of_sphere(std::uint64_t seed, std::uint64_t i);
 
 /// The largest packing fraction, in hundredths, at which sample_box is sure to find places for these grains,
 /// up to that of the options. O(grains), and less than a second for 300.
 double largest_packing_fraction(const BoxSampleOptions& given);
 
 /// A box with its corner at (0, 0), with walls or a cell that repeats; walls below and above one grain [m].
-/// Raises UsageError for a cell that a grain might meet twice, and for one that repeats along y alone.
-Box<2> box_of(const BoxSample& sample);
-Box<3> box_of(const BoxSampleOf<3>& sample);
+/// Raises UsageError for a cell that a grain might meet twice, and for one that repeats along an axis, but
+/// not along those before it.
+template <int Dim>
+Box<Dim> box_of(const BoxSampleOf<Dim>& sample);
 Box<2> walls_at(double low, double high);
 Box<3> solid_walls_at(double low, double high);
 
@@ -73,6 +78,7 @@ struct Misplaced {
 };
 
 /// All of them, by grain. O(n).
-std::vector<Misplaced> misplaced_grains(const BoxSample& sample);
+template <int Dim>
+std::vector<Misplaced> misplaced_grains(const BoxSampleOf<Dim>& sample);
 
 }  // namespace softgrain

@@ -24,6 +24,13 @@ void visit_contact_lists(StateVisitor& visit, std::vector<std::int64_t>& bodies,
       places);
 }
 
+/// Where the contacts of a periodic cell are met.
+template <int Dim>
+void visit_contact_images(StateVisitor& visit, std::vector<Vec<Dim>>& images) {
+  visit.list({"contact_image", "m", Owner::contact, Role::start, "from the master to where it is met"},
+             images);
+}
+
 /// Raises IoError unless the k-th body of each contact is from 0, a wall from -1, to below count_of(k).
 template <class Count>
 void check_contact_bodies(std::span<const std::int64_t> bodies, std::size_t bodies_of_contact,

@@ -9,9 +9,6 @@ namespace {
 /// Contacts of a strip, about: enough that a thread has something to do.
 constexpr int contacts_per_strip = 64;
 
-Vec<2> image_of(const OutlineContact& contact) { return contact.image; }
-Vec<3> image_of(const SurfaceContact&) { return {}; }
-
 }  // namespace
 
 template <int Dim>
@@ -22,8 +19,7 @@ void ContactStrips::sort(Contacts<Dim> contacts, const OutlineStateOf<Dim>& outl
   const auto along = [&](const Vec<Dim>& x) { return ring ? (to_share * x)[0] : x[0]; };
   double low = 0, high = 0, reach = 0;  // of a contact's vertices from its slave
   for (int c = 0; c < n; ++c) {
-    const double x = along(outline.position[contacts[c].vertex]),
-                 image = ring ? along(image_of(contacts[c])) : 0;
+    const double x = along(outline.position[contacts[c].vertex]), image = ring ? along(contacts[c].image) : 0;
     low = c == 0 ? x : std::min(low, x);
     high = c == 0 ? x : std::max(high, x);
     contacts[c].for_each_vertex([&](int vertex, double) {

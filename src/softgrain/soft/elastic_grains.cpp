@@ -137,14 +137,13 @@ Numbers ElasticGrains<Dynamics>::numbers(const Box<Dim>& box) const {
   }
   numbers.emplace_back("iterations", sums_.steps > 0 ? sums_.iterations / sums_.steps : 0);
   numbers.emplace_back("rejected_steps", sums_.rejected);
-  if constexpr (Dim == 2)
-    if (grains.has_history()) {
-      const PlasticStrain strain = plastic_strain(grains);
-      numbers.emplace_back("dissipation_plastic", dynamics_.work.flow);
-      numbers.emplace_back("plastic_strain", strain.mean);
-      numbers.emplace_back("plastic_strain_max", strain.largest);
-      numbers.emplace_back("yielding", dynamics_.last_flow.share);
-    }
+  if (grains.has_history()) {
+    const PlasticStrain strain = plastic_strain(grains);
+    numbers.emplace_back("dissipation_plastic", dynamics_.work.flow);
+    numbers.emplace_back("plastic_strain", strain.mean);
+    numbers.emplace_back("plastic_strain_max", strain.largest);
+    numbers.emplace_back("yielding", dynamics_.last_flow.share);
+  }
   if (!(dynamics_.options.gravity == Vec<Dim>{}))
     numbers.emplace_back("gravity_work", dynamics_.work.gravity);
   if (!box.closed()) {

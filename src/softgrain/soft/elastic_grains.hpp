@@ -23,8 +23,8 @@ class ElasticGrains final : public ModelOf<Dynamics::dimension> {
 
   std::unique_ptr<ModelOf<Dim>> copy() const override { return std::make_unique<ElasticGrains>(*this); }
   StepReport step(Box<Dim>& box, double dt) override;
-  void follow([[maybe_unused]] const Mat<Dim>& L) override {
-    if constexpr (Dim == 2) dynamics_.work.walls += add_affine_velocity(dynamics_.grains, L);
+  void follow(const Mat<Dim>& L) override {
+    dynamics_.work.walls += add_affine_velocity(dynamics_.grains, L);
   }
   void visit(StateVisitor& visit) override;
   Settings settings() const override;

@@ -166,11 +166,7 @@ void ExplicitStep<Dim>::kick(double dt) {
     if (options.damping_share > 0)
       for (std::size_t i = 0; i < batch.position.size(); ++i)
         batch.position[i] += Wide(options.damping_share * dt) * batch.velocity[i];
-    unsigned lanes = 0;
-    if constexpr (Dim == 2)
-      lanes = internal_force_and_history(grains, batch, force, dt, batch_step_[b].flow);
-    else
-      lanes = internal_force(grains, batch, force);
+    const unsigned lanes = internal_force_and_history(grains, batch, force, dt, batch_step_[b].flow);
     inverted[b] = batch.grain_in(lanes);
     if (inverted[b] >= 0) return;
     kick_batch(dt, force, batch, batch_step_[b]);
@@ -254,12 +250,10 @@ void ExplicitStep<Dim>::drift_outline(double dt) {
 
 template <int Dim>
 void ExplicitStep<Dim>::add_flow() {
-  if constexpr (Dim == 2) {
-    std::vector<FlowOfStep> flows;
-    for (const BatchStep& step : batch_step_) flows.push_back(step.flow);
-    last_flow = sum_of(grains, flows);
-    work.flow += last_flow.dissipated;
-  }
+  std::vector<FlowOfStep> flows;
+  for (const BatchStep& step : batch_step_) flows.push_back(step.flow);
+  last_flow = sum_of<Dim>(grains, flows);
+  work.flow += last_flow.dissipated;
 }
 
 template class ExplicitStep<2>;

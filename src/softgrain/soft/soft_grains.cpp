@@ -54,7 +54,7 @@ GrainsOf<Dim>::GrainsOf(std::vector<PlacementOf<Dim>> grains, std::vector<GrainM
       batches[b].grain.fill(-1);
       batches[b].position.resize(placed.topology->grid.nodes());
       batches[b].velocity.resize(placed.topology->grid.nodes());
-      if constexpr (Dim == 2) batches[b].history = undeformed_history(law(batches[b]), *placed.topology);
+      batches[b].history = undeformed_history<Dim>(law(batches[b]), placed.topology->points.size());
     }
     Batch& batch = batches[b];
     int lane = 0;
@@ -206,23 +206,34 @@ int GrainsOf<Dim>::runaway_grain(double dt) const {
   return -1;
 }
 
-Vec<2, Wide> affine_velocity(const SoftGrains& grains, const GrainBatch& batch, const Mat<2>& L) {
-  const Vec<2, Wide> x = centre_of_mass(grains, batch, batch.position);
-  Vec<2, Wide> v{L(0, 0) * x[0] + L(0, 1) * x[1], L(1, 0) * x[0] + L(1, 1) * x[1]};
+template <int Dim>
+Vec<Dim, Wide> affine_velocity(const GrainsOf<Dim>& grains, const BatchOf<Dim>& batch, const Mat<Dim>& L) {
+  const Vec<Dim, Wide> x = centre_of_mass(grains, batch, batch.position);
+  Vec<Dim, Wide> v;
+  for (int d = 0; d < Dim; ++d) {
+    v[d] = L(d, 0) * x[0];
+    for (int k = 1; k < Dim; ++k) v[d] = v[d] + L(d, k) * x[k];
+  }
   for (int lane = 0; lane < Wide::size; ++lane)
     if (batch.grain[lane] < 0)
-      for (int d = 0; d < 2; ++d) v[d].set(lane, 0);
+      for (int d = 0; d < Dim; ++d) v[d].set(lane, 0);
   return v;
 }
 
-double add_affine_velocity(SoftGrains& grains, const Mat<2>& L) {
+template <int Dim>
+double add_affine_velocity(GrainsOf<Dim>& grains, const Mat<Dim>& L) {
   const double before = grains.kinetic_energy();
-  for (GrainBatch& batch : grains.batches) {
-    const Vec<2, Wide> more = affine_velocity(grains, batch, L);
-    for (Vec<2, Wide>& v : batch.velocity) v += more;
+  for (BatchOf<Dim>& batch : grains.batches) {
+    const Vec<Dim, Wide> more = affine_velocity(grains, batch, L);
+    for (Vec<Dim, Wide>& v : batch.velocity) v += more;
   }
   return grains.kinetic_energy() - before;
 }
+
+template Vec<2, Wide> affine_velocity(const GrainsOf<2>&, const BatchOf<2>&, const Mat<2>&);
+template Vec<3, Wide> affine_velocity(const GrainsOf<3>&, const BatchOf<3>&, const Mat<3>&);
+template double add_affine_velocity(GrainsOf<2>&, const Mat<2>&);
+template double add_affine_velocity(GrainsOf<3>&, const Mat<3>&);
 
 template class GrainsOf<2>;
 template class GrainsOf<3>;

@@ -204,9 +204,11 @@ Vec<Dim, Wide> centre_of_mass(const GrainsOf<Dim>& grains, const BatchOf<Dim>& b
 }
 
 /// L x_c of each grain of a batch, x_c its centre of mass [m/s]; 0 in lanes without a grain.
-Vec<2, Wide> affine_velocity(const SoftGrains& grains, const GrainBatch& batch, const Mat<2>& L);
+template <int Dim>
+Vec<Dim, Wide> affine_velocity(const GrainsOf<Dim>& grains, const BatchOf<Dim>& batch, const Mat<Dim>& L);
 
 /// Each grain as a whole gets the velocity L x_c more. Returns by how much the kinetic energy grew [J/m].
-double add_affine_velocity(SoftGrains& grains, const Mat<2>& L);
+template <int Dim>
+double add_affine_velocity(GrainsOf<Dim>& grains, const Mat<Dim>& L);
 
 }  // namespace softgrain

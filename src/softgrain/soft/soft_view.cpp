@@ -139,7 +139,7 @@ void visit_nodes(GrainsOf<Dim>& grains, StateVisitor& visit) {
   declare({"position", "m", Owner::node, Role::state, "x, then y (and z) of each node of eight grains"},
           &Batch::position);
   declare({"velocity", "m/s", Owner::node, Role::state, "the same of their velocities"}, &Batch::velocity);
-  if constexpr (Dim == 2) visit_history(grains, visit);
+  visit_history(grains, visit);
 }
 
 namespace {
@@ -162,9 +162,7 @@ void visit_contacts(const SoftGrains& grains, int walls, bool repeats, std::vect
     if (repeats) images.push_back(c.image);
   }
   visit_contact_lists(visit, bodies, bodies_of_contact, places);
-  if (repeats)
-    visit.list({"contact_image", "m", Owner::contact, Role::start, "from the master to where it is met"},
-               images);
+  if (repeats) visit_contact_images(visit, images);
   if (rigid)
     visit.list({"contact_arc", "", Owner::contact, Role::start,
                 "where on the arc of a rigid slave: along it, and inwards; 0 where it is the vertex"},

@@ -6,6 +6,8 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/material/elastic_law.hpp"
 #include "softgrain/soft/brick_in_lanes.hpp"
+#include "softgrain/soft/brick_state.hpp"
+#include "softgrain/soft/law_at_points.hpp"
 
 namespace softgrain {
 namespace {
@@ -15,7 +17,7 @@ using WideSolid = Mat<3, Wide>;
 /// Laws that work in space and in grains that turn.
 template <class Law>
 constexpr bool is_solid() {
-  if constexpr (SplitLaw<Law, 3>)
+  if constexpr (SplitLaw<Law, 3> || SplitHistoryLaw<Law, 3>)
     return Law::objective;
   else
     return false;
@@ -85,76 +87,68 @@ template <HasBrickFactors Law>
   return lanes_without(least);
 }
 
-/// F of the eight points of a cell.
-struct BrickState {
-  BrickState(const SolidBatch& batch, std::size_t index)
-      : nodes(batch.topology->grid.cell[index]), points(&batch.topology->points[8 * index]) {
-    // F = sum_(a > 0) (x_a - x_0) (x) dN_a/dX, as sum_a N_a = 1
-    const Wide inverse_radius = 1.0 / batch.radius;
-    const auto x = [&](std::size_t a) { return batch.position[static_cast<std::size_t>(nodes[a])]; };
-    for (std::size_t a = 1; a < 8; ++a) {
-      const Vec<3, Wide> edge = inverse_radius * (x(a) - x(0));
-      for (std::size_t p = 0; p < 8; ++p)
-        for (int i = 0; i < 3; ++i)
-          for (int j = 0; j < 3; ++j) F[p](i, j) += edge[i] * points[p].gradient[a][j];
-    }
-    for (std::size_t p = 0; p < 8; ++p) volume += points[p].volume;
-  }
-
-  /// U' belongs to the mean of theta, or to that of the point.
-  template <class Law>
-  std::array<Wide, 8> thetas(const Law& law, bool mean_dilatation) const {
-    std::array<Wide, 8> theta;
-    Wide mean = 0.0;
-    for (std::size_t p = 0; p < 8; ++p) {
-      theta[p] = law.dilatation().value(F[p]);
-      mean += Wide(points[p].volume / volume) * theta[p];
-    }
-    if (mean_dilatation) theta.fill(mean);
-    return theta;
-  }
-
-  const std::array<int, 8>& nodes;
-  const SolidPoint* points;
-  double volume = 0;  ///< [R^3]
-  std::array<WideSolid, 8> F{};
-};
-
-template <class Law>
-[[gnu::flatten]] unsigned force_of(const Law& law, bool mean_dilatation, const SolidBatch& batch,
-                                   WidePlaces<3>& force) {
+/// With P of the deviatoric part of the law at point p: deviatoric(cell, p).
+template <class Law, class Deviatoric>
+[[gnu::always_inline]] inline unsigned force_of_points(const Law& law, bool mean_dilatation,
+                                                       const SolidBatch& batch, WidePlaces<3>& force,
+                                                       const Deviatoric& deviatoric) {
   std::fill(force.begin(), force.end(), Vec<3, Wide>{});
   const Wide square = batch.radius * batch.radius;
   Wide least = 1.0;
-  for (std::size_t c = 0; c < batch.topology->grid.cell.size(); ++c) {
-    const BrickState cell(batch, c);
+  for_each_cell(batch, [&](const BrickState& cell) {
     const std::array<Wide, 8> theta = cell.thetas(law, mean_dilatation);
     for (std::size_t p = 0; p < 8; ++p) {
       const WideSolid& F = cell.F[p];
       const Wide J = determinant(F);
       least = select(J > 0.0, least, J);
-      const WideSolid P =
-          law.deviatoric().stress(F) + law.volume().derivative(theta[p]) * law.dilatation().gradient(F);
+      const WideSolid P = deviatoric(cell, static_cast<int>(p)) +
+                          law.volume().derivative(theta[p]) * law.dilatation().gradient(F);
       for (std::size_t a = 0; a < 8; ++a) {
         const Vec<3> g = cell.points[p].volume * cell.points[p].gradient[a];
         Vec<3, Wide>& f = force[static_cast<std::size_t>(cell.nodes[a])];
         for (int i = 0; i < 3; ++i) f[i] += square * (P(i, 0) * g[0] + P(i, 1) * g[1] + P(i, 2) * g[2]);
       }
     }
-  }
+  });
   return lanes_without(least);
+}
+
+/// Before anything flows.
+template <class Law>
+[[gnu::flatten]] unsigned force_of(const Law& law, bool mean_dilatation, const SolidBatch& batch,
+                                   WidePlaces<3>& force) {
+  const LawAtPoints<Law, 3> at(law, batch, 0);
+  return force_of_points(law, mean_dilatation, batch, force,
+                         [&](const BrickState& cell, int p) { return at.stress_without_flow(cell, p); });
+}
+
+template <class Law>
+requires HistoryLaw<Law, 3>
+[[gnu::flatten]] unsigned force_and_history_of(const Law& law, bool mean_dilatation, SolidBatch& batch,
+                                               double dt, WidePlaces<3>& force, FlowOfStep& flow) {
+  HistoryOfStep<Law, 3> step(batch);
+  const LawAtPoints<Law, 3> at(law, batch, dt);
+  const unsigned inverted =
+      force_of_points(law, mean_dilatation, batch, force, [&](const BrickState& cell, int p) {
+        const auto before = at.history(cell, p);
+        const auto [P, advanced] = law.deviatoric().stress_and_advance(cell.F[p], before, dt);
+        step.keep(cell, p, before, advanced);
+        return P;
+      });
+  flow = step.sum();
+  return inverted;
 }
 
 template <class Law>
 [[gnu::flatten]] Wide energy_of(const Law& law, bool mean_dilatation, const SolidBatch& batch) {
+  const LawAtPoints<Law, 3> at(law, batch, 0);
   Wide sum = 0.0;
-  for (std::size_t c = 0; c < batch.topology->grid.cell.size(); ++c) {
-    const BrickState cell(batch, c);
+  for_each_cell(batch, [&](const BrickState& cell) {
     const std::array<Wide, 8> theta = cell.thetas(law, mean_dilatation);
     for (std::size_t p = 0; p < 8; ++p)
-      sum +=
-          Wide(cell.points[p].volume) * (law.deviatoric().energy(cell.F[p]) + law.volume().energy(theta[p]));
-  }
+      sum += Wide(cell.points[p].volume) *
+             (at.stored(cell, static_cast<int>(p)) + law.volume().energy(theta[p]));
+  });
   return sum * body_unit<3>(batch.radius);
 }
 
@@ -163,9 +157,10 @@ template <class Law>
 void require_solid(const GrainMaterial& material) {
   std::visit(
       []<class Law>(const Law&) {
-        require(is_solid<Law>(),
-                "not yet: this law of the material knows no grains in space; take neo_hookean, or another "
-                "elastic and objective one");
+        require(
+            is_solid<Law>(),
+            "not yet: this law of the material knows no grains in space; take neo_hookean, another elastic "
+            "and objective one, prony, norton, or von_mises without kinematic_modulus");
       },
       material.law);
 }
@@ -179,6 +174,20 @@ unsigned internal_force(const SolidGrains& grains, const SolidBatch& batch, Wide
           return force_of(law, mean, batch, force);
         else
           return 0xffu;
+      },
+      grains.law(batch));
+}
+
+unsigned internal_force_and_history(const SolidGrains& grains, SolidBatch& batch, WidePlaces<3>& force,
+                                    double dt, FlowOfStep& flow) {
+  force.resize(batch.position.size());
+  const bool mean = grains.material(batch.kind).mean_dilatation;
+  return std::visit(
+      [&]<class Law>(const Law& law) -> unsigned {
+        if constexpr (HistoryLaw<Law, 3>)
+          return force_and_history_of(law, mean, batch, dt, force, flow);
+        else
+          return internal_force(grains, batch, force);
       },
       grains.law(batch));
 }

@@ -21,23 +21,31 @@ std::vector<Vec<3>> forces_on_vertices(const SoftViewOf<3>& view) {
   return force;
 }
 
-/// Pressure -tr(sigma)/3 of a law at F, compression positive [Pa].
-double pressure_at(const AnyLaw& any, const Mat<3>& F) {
+/// Pressure -tr(sigma)/3 of point p of a grain at F, compression positive [Pa].
+double pressure_at(const SolidGrains& grains, int grain, std::size_t p, const Mat<3>& F) {
+  const auto place = grains.batch_of(grain);
+  const SolidBatch* batch = place.first;  // not a structured binding: clang 14 keeps those out of lambdas
+  const int lane = place.second;
   return std::visit(
       [&]<class Law>(const Law& law) {
-        if constexpr (SplitLaw<Law, 3>)
+        if constexpr (SplitLaw<Law, 3>) {
           return -contract(law.stress(F), F) / (3 * determinant(F));
-        else
+        } else if constexpr (HistoryLaw<Law, 3>) {
+          typename Law::template State<3, double> state;
+          for (std::size_t k = 0; k < state.size(); ++k)
+            state[k] = batch->history[state.size() * p + k][lane];
+          return -contract(law.stress(F, state, 0), F) / (3 * determinant(F));
+        } else {
           return 0.0;
+        }
       },
-      any);
+      grains.law(*batch));
 }
 
 /// Pressure in the cell behind each quad of a grain, in the mean: the last cells of the grid, in the order of
 /// the quads [Pa].
 std::vector<double> skin_pressures(const SolidGrains& grains, int grain) {
   const SolidTopology& shape = grains.topology(grain);
-  const AnyLaw& law = grains.material(grains.kind(grain)).law;
   std::vector<double> pressures;
   for (std::size_t c = shape.grid.cell.size() - shape.grid.quad.size(); c < shape.grid.cell.size(); ++c) {
     double sum = 0;
@@ -48,7 +56,7 @@ std::vector<double> skin_pressures(const SolidGrains& grains, int grain) {
         for (int i = 0; i < 3; ++i)
           for (int j = 0; j < 3; ++j) F(i, j) += x[i] * shape.points[p].gradient[a][j];
       }
-      sum += pressure_at(law, F) / 8;
+      sum += pressure_at(grains, grain, p, F) / 8;
     }
     pressures.push_back(sum);
   }
@@ -77,7 +85,8 @@ std::vector<ContactPointOf<3>> contact_points(const SoftViewOf<3>& view) {
          .b = contact.wall >= 0 ? wall_index(contact.wall) : grains.grain_of_vertex(contact.master[5]),
          .force = (-1 / view.impulse_time) * impulse_vector(contact, view.impulse[c]),
          .normal = Vec<3>{} - contact.normal,
-         .position = place});
+         .position = place,
+         .image = contact.image});
   }
   return points;
 }
@@ -127,18 +136,21 @@ Scene soft_scene(const SoftViewOf<3>& view) {
   return scene;
 }
 
-void visit_contacts(const SolidGrains& grains, int walls, bool, std::vector<SurfaceContact>& contacts,
+void visit_contacts(const SolidGrains& grains, int walls, bool repeats, std::vector<SurfaceContact>& contacts,
                     std::vector<Vec<3>>& impulse, StateVisitor& visit) {
   std::vector<std::int64_t> bodies;
   std::vector<Vec<4 + masters>> places;
+  std::vector<Vec<3>> images;
   for (const SurfaceContact& c : contacts) {
     bodies.insert(bodies.end(), {c.point, c.vertex, c.wall});
     bodies.insert(bodies.end(), c.master.begin(), c.master.end());
     Vec<4 + masters> place{c.normal[0], c.normal[1], c.normal[2], c.gap};
     for (std::size_t k = 0; k < masters; ++k) place[static_cast<int>(4 + k)] = c.weight[k];
     places.push_back(place);
+    if (repeats) images.push_back(c.image);
   }
   visit_contact_lists(visit, bodies, bodies_of_contact, places);
+  if (repeats) visit_contact_images(visit, images);
   visit.list({"contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t)"}, impulse);
   if (!visit.reads()) return;
   int patches = 0;
@@ -146,7 +158,8 @@ void visit_contacts(const SolidGrains& grains, int walls, bool, std::vector<Surf
   check_contact_bodies(bodies, bodies_of_contact, 2, [&](std::size_t k) {
     return k == 2 ? walls : grains.outline_size() + (k == 0 ? patches : 0);
   });
-  if (places.size() != impulse.size() || bodies.size() != bodies_of_contact * places.size())
+  if (places.size() != impulse.size() || (repeats && images.size() != impulse.size()) ||
+      bodies.size() != bodies_of_contact * places.size())
     throw IoError("the snapshot's arrays of contacts have different lengths");
   contacts.clear();
   for (std::size_t c = 0; c < places.size(); ++c) {
@@ -155,6 +168,7 @@ void visit_contacts(const SolidGrains& grains, int walls, bool, std::vector<Surf
     SurfaceContact contact{.point = body(0), .vertex = body(1), .wall = body(2)};
     contact.normal = {place[0], place[1], place[2]};
     contact.gap = place[3];
+    if (repeats) contact.image = images[c];
     for (std::size_t k = 0; k < masters; ++k) {
       contact.master[k] = body(3 + k);
       contact.weight[k] = place[static_cast<int>(4 + k)];

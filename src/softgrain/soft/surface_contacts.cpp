@@ -5,9 +5,10 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
 
 #include "softgrain/core/parallel.hpp"
-#include "softgrain/geometry/cell_grid.hpp"
+#include "softgrain/geometry/images.hpp"
 #include "softgrain/soft/carried_impulses.hpp"
 
 namespace softgrain {
@@ -82,10 +83,19 @@ std::vector<FacingPatch> patches_facing(const Surfaces& surfaces, int grain, int
   return facing;
 }
 
+/// The image of the vertex `nearest` that the point `vertex` meets.
+void set_image(SurfaceContact& contact, int nearest, const OutlineStateOf<3>& state) {
+  if (!state.cell.any()) return;
+  const auto n = state.cell.nearest(state.position[nearest] - state.position[contact.vertex]);
+  contact.image = state.cell.shift(n);
+  contact.image_motion = state.dt * state.cell.velocity(n);
+}
+
 /// Where the point `vertex` faces a grain, of which the vertex `nearest` is nearest to it.
 SurfaceContact contact_with_patch(const Surfaces& surfaces, int vertex, int grain, int nearest) {
-  const Vec<3>& x = surfaces.state.position[vertex];
   SurfaceContact contact{.point = vertex, .vertex = vertex};
+  set_image(contact, nearest, surfaces.state);
+  const Vec<3> x = surfaces.state.position[vertex] - contact.image;
   double least = std::numeric_limits<double>::infinity();
   for (const FacingPatch& facing : patches_facing(surfaces, grain, nearest, x)) {
     const SurfacePatch patch = surfaces.patch(grain, facing.patch);
@@ -103,20 +113,45 @@ SurfaceContact contact_with_patch(const Surfaces& surfaces, int vertex, int grai
   return contact;
 }
 
+/// All vertices, and those of their images that lie near a periodic cell, sorted into cells of a size.
+class VertexGrid {
+ public:
+  VertexGrid(const OutlineStateOf<3>& state, double size)
+      : images_(images_of(state, size)),
+        position_(images_ ? images_->position : state.position),
+        grid_(position_, size) {}
+
+  /// visit(w, d): d is the way from vertex v to vertex w, or to an image of it.
+  template <class Visit>
+  void for_each_neighbour(int v, const Visit& visit) const {
+    grid_.for_each_neighbour(v, [&](int at) {
+      visit(images_ ? images_->point[static_cast<std::size_t>(at)] : at,
+            position_[static_cast<std::size_t>(at)] - position_[static_cast<std::size_t>(v)]);
+    });
+  }
+
+ private:
+  static std::optional<Images<3>> images_of(const OutlineStateOf<3>& state, double reach) {
+    if (!state.cell.any()) return std::nullopt;
+    return Images<3>(state.position, state.cell, reach);
+  }
+  std::optional<Images<3>> images_;
+  std::span<const Vec<3>> position_;
+  CellGrid<3> grid_;
+};
+
 /// The vertex of each other grain nearest to vertex v, within the reach; sorted by grain.
 struct NearestVertex {
   int grain, vertex;
   double distance_squared;
 };
-void find_nearest(const Surfaces& surfaces, const CellGrid<3>& grid, double reach, int v,
+void find_nearest(const Surfaces& surfaces, const VertexGrid& grid, double reach, int v,
                   std::vector<NearestVertex>& near) {
   near.clear();
   const int grain = surfaces.grains.grain_of_vertex(v);
-  const auto& position = surfaces.state.position;
-  grid.for_each_neighbour(v, [&](int w) {
+  grid.for_each_neighbour(v, [&](int w, const Vec<3>& d) {
     const int other = surfaces.grains.grain_of_vertex(w);
     if (other == grain) return;
-    const Vec<3> d = position[w] - position[v];
     const double distance_squared = dot(d, d);
     if (distance_squared > reach * reach) return;
     const auto found =
@@ -142,7 +177,7 @@ void add_wall_contacts(const Surfaces& surfaces, SurfaceContact contact, double 
 }
 
 /// Those of one vertex.
-void add_contacts_of_vertex(const Surfaces& surfaces, const CellGrid<3>& grid, double margin, int v,
+void add_contacts_of_vertex(const Surfaces& surfaces, const VertexGrid& grid, double margin, int v,
                             std::vector<NearestVertex>& near, std::vector<SurfaceContact>& contacts) {
   add_wall_contacts(surfaces, {.point = v, .vertex = v}, margin, contacts);
   find_nearest(surfaces, grid, surfaces.reach + margin, v, near);
@@ -180,7 +215,7 @@ std::vector<SurfaceContact> SurfaceNeighbours::detect(const SolidGrains& grains,
                                                       const OutlineStateOf<3>& state, double margin) const {
   const Surfaces surfaces(grains, state);
   const double gap = margin * surfaces.segment;
-  const CellGrid<3> grid(state.position, surfaces.reach + gap);
+  const VertexGrid grid(state, surfaces.reach + gap);
   std::vector<SurfaceContact> contacts;
   append_in_parallel(grains.outline_size(), contacts, [&](int v, std::vector<SurfaceContact>& list) {
     thread_local std::vector<NearestVertex> near;
@@ -194,18 +229,19 @@ std::vector<SurfaceContact> SurfaceNeighbours::detect(const SolidGrains& grains,
 }
 
 double gap_now(const SurfaceContact& contact, const OutlineStateOf<3>& state) {
-  Vec<3> apart;
+  Vec<3> apart = Vec<3>{} - contact.image;
   if (contact.wall >= 0) apart -= state.walls[contact.wall].point;
   contact.for_each_vertex([&](int v, double weight) { apart += weight * state.position[v]; });
   return dot(apart, contact.normal);
 }
 
 void update_gap(SurfaceContact& contact, const OutlineStateOf<3>& state) {
+  if (contact.wall < 0) set_image(contact, contact.master[5], state);
   contact.gap = gap_now(contact, state);
 }
 
 Vec<3> relative_displacement(const SurfaceContact& contact, const OutlineStateOf<3>& state) {
-  Vec<3> displacement;
+  Vec<3> displacement = Vec<3>{} - contact.image_motion;
   if (contact.wall >= 0) displacement -= state.dt * state.walls[contact.wall].velocity;
   contact.for_each_vertex(
       [&](int v, double weight) { displacement += weight * (state.position[v] - state.start[v]); });

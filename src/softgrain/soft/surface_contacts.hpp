@@ -26,7 +26,8 @@ struct SurfaceContact {
   std::array<double, 16> weight{};
   Vec<3> normal{};        ///< unit, from the master or wall to the point
   double gap = 0;         ///< [m], open > 0
-  Vec<3> image_motion{};  ///< none: there are no periodic cells in space yet
+  Vec<3> image{};         ///< from where the master is to where the point meets it, in a periodic cell [m]
+  Vec<3> image_motion{};  ///< of that image against the master over the step [m]
 
   bool is_vertex_at_wall() const { return wall >= 0 && point == vertex; }
   /// visit(vertex, weight) for all vertices that take part: dg = n . sum weight dx.
@@ -50,7 +51,7 @@ class SurfaceNeighbours {
                                      double margin) const;
 };
 
-/// Brings the gap of a contact up to where its vertices are now.
+/// Brings the gap of a contact, and its image, up to where its vertices and the periodic cell are now.
 void update_gap(SurfaceContact& contact, const OutlineStateOf<3>& state);
 
 /// Gap of a contact when its bodies have moved a little since it was found [m].
@@ -61,7 +62,8 @@ inline Vec<3> impulse_vector(const SurfaceContact& contact, const Vec<3>& impuls
   return from_local(contact.normal, impulse);
 }
 
-/// Displacement of the point since the start of the step, less that of the place or wall that it faces [m].
+/// Displacement of the point since the start of the step, less that of the place, its image or the wall that
+/// it faces [m].
 Vec<3> relative_displacement(const SurfaceContact& contact, const OutlineStateOf<3>& state);
 
 /// Impulses of `old` contacts [N s], given to the new contacts of the same point and master grain or wall.

@@ -9,7 +9,7 @@
 using namespace softgrain;
 using namespace softgrain::test;
 
-static_assert(SplitHistoryLaw<Prony, 2> && !ElasticLaw<Prony, 2>);
+static_assert(SplitHistoryLaw<Prony, 2> && SplitHistoryLaw<Prony, 3> && !ElasticLaw<Prony, 2>);
 
 namespace {
 
@@ -26,8 +26,8 @@ double kirchhoff(const Prony& law, const Mat<2>& F, const State& state) {
 
 /// A point that was strained along different axes, for a while each.
 State strained(const Prony& law) {
-  State state = law.advance({{1.25, 0.3, -0.1, 0.9}}, undeformed(), 0.07).state;
-  return law.advance({{0.9, -0.2, 0.4, 1.3}}, state, 0.2).state;
+  State state = law.advance(Mat<2>{{1.25, 0.3, -0.1, 0.9}}, undeformed(), 0.07).state;
+  return law.advance(Mat<2>{{0.9, -0.2, 0.4, 1.3}}, state, 0.2).state;
 }
 
 }  // namespace
@@ -184,4 +184,43 @@ TEST_CASE("shares and times that cannot be are refused by name") {
       "the relaxation shares must add up to less than 1: a grain of which nothing lasts is a "
       "fluid; got a sum of 1",
       UsageError);
+}
+
+TEST_CASE("plane strain of what relaxes is relaxation in space with a stretch of one across the plane") {
+  State plane = undeformed();
+  auto space = Prony::undeformed<3, double>();
+  const double dt = 0.05;
+  for (int k = 0; k < 100; ++k) {
+    const double t = 0.1 * k;
+    const Mat<2> F{
+        {1 + 0.3 * std::sin(t), 0.4 * std::sin(1.7 * t), 0.3 * std::sin(0.6 * t), 1 - 0.2 * std::cos(t)}};
+    const Mat<2> P = gel.stress(F, plane, dt);
+    const Mat<3> Q = gel.stress(embedded(F), space, dt);
+    CHECK(difference(P, Mat<2>{{Q(0, 0), Q(0, 1), Q(1, 0), Q(1, 1)}}) < 1e-12);
+    CHECK(gel.stress_across(F, plane, dt) == doctest::Approx(Q(2, 2)).epsilon(1e-10));
+    CHECK(gel.stored(F, plane) == doctest::Approx(gel.stored(embedded(F), space)).epsilon(1e-10));
+    const auto [plane_after, plane_lost] = gel.advance(F, plane, dt);
+    const auto [stress, after] = gel.stress_and_advance(embedded(F), space, dt);
+    CHECK(difference(stress, Q) == 0);
+    CHECK(plane_lost == doctest::Approx(after.dissipated).epsilon(1e-9));
+    plane = plane_after;
+    space = after.state;
+  }
+}
+
+TEST_CASE("stress and tangent of what relaxes in space are derivatives of its incremental potential") {
+  auto state = Prony::undeformed<3, double>();
+  state = gel.advance(Mat<3>{{1.2, 0.2, 0.1, -0.1, 0.9, 0.3, 0, 0.1, 1.1}}, state, 0.07).state;
+  const Mat<3> F{{0.9, -0.2, 0.1, 0.3, 1.2, -0.1, 0.2, 0, 1.05}};
+  const double dt = 0.2, step = 1e-5;
+  const Mat<3> P = gel.stress(F, state, dt);
+  const Mat<9> A = gel.tangent(F, state, dt);
+  for (int i = 0; i < 9; ++i) {
+    Mat<3> up = F, down = F;
+    up.c[i] += step, down.c[i] -= step;
+    const double slope = (gel.energy(up, state, dt) - gel.energy(down, state, dt)) / (2 * step);
+    CHECK(slope == doctest::Approx(P.c[i]).epsilon(1e-7));
+    const Mat<3> change = (1 / (2 * step)) * (gel.stress(up, state, dt) - gel.stress(down, state, dt));
+    for (int j = 0; j < 9; ++j) CHECK(std::abs(change.c[j] - A(j, i)) < 1e-7);
+  }
 }

@@ -10,6 +10,7 @@
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/sample.hpp"
+#include "softgrain/experiment/solid_case.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/io/case/case_kinds.hpp"
 #include "softgrain/io/case/case_relations.hpp"
@@ -36,9 +37,11 @@ class CaseReader {
       forms_.finish_file();
       for (std::size_t i = 0; i < sets_.size(); ++i) read_set(static_cast<int>(i));
       settle_time_step();
-      settle_dimension();
+      set_defaults_of_space(draft_.the_case, [&](const char* key) { return draft_.origins.contains(key); });
+      forms_.finish_stages();
       given_ = draft_.the_case;
       const PlacedLines lines = place_grains(forms_, draft_, sources_);
+      check_heights(draft_);
       forms_.finish_kinds();
       draft_.the_case = complete_sample(draft_.the_case);
       pour_grains();
@@ -207,16 +210,6 @@ class CaseReader {
       draft_.add(last_origin({"loading.wall_velocity", "loading.shear_rate", "experiment.loading"}),
                  "\"quasi-static\" needs a stress: rigid grains have none of their own; name one, as "
                  "loading.max_stress or that of a stage");
-  }
-
-  /// In space other defaults hold.
-  void settle_dimension() {
-    Case& c = draft_.the_case;
-    if (!is_in_space(c)) return;
-    const auto is_given = [&](const char* key) { return draft_.origins.contains(key); };
-    if (!is_given("mpm.integrator")) c.mpm.integrator = Integrator::symplectic_euler;
-    if (!is_given("mpm.cells")) c.mpm.cells = 6;
-    if (!is_given("output.report")) c.output.report = false;
   }
 
   /// Walls go as fast as their stages say: the time step follows it, and averages of the stress.

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "softgrain/loading/stage.hpp"
-
 namespace softgrain {
 namespace {
 
@@ -65,8 +63,9 @@ std::vector<FormKey> all_forms() {
       stands_for("stage.set.mpm.damping", {"mpm.damping"}, "of grains (mpm)"),
       {"stage.repeat_from", Takes::text, {}, "name of the stage from which on is repeated; left out: this one alone"},
       number("stage.until.time", "ms", positive, "time since the stage began"),
-      number("stage.until.strain", "", any, "compressive strain of yy since the start of the run, as the column strain has it"),
+      number("stage.until.strain", "", any, "compressive strain of yy since the start of the run, as the column strain has it; in space of zz"),
       number("stage.until.strain_xx", "", any, "the same of xx, ln(w_start/w)"),
+      number("stage.until.strain_yy", "", any, "the same of yy in space"),
       number("stage.until.strain_xy", "", any, "shear strain gamma of a periodic cell since the start of the run"),
       number("stage.until.packing_fraction", "", positive, "packing fraction Phi_0 of the undeformed grains"),
       number("stage.until.overlap", "", positive, "mean overlap of the contacts, as the column overlap_mean has it"),
@@ -75,9 +74,9 @@ std::vector<FormKey> all_forms() {
 }
 
 /// What walls of a part do, and the stress on them that ends a stage.
-void add_forms_of(Part part, std::string_view walls, std::vector<FormKey>& all) {
+void add_forms_of(std::string_view part, std::string_view walls, std::vector<FormKey>& all) {
   const Range any, positive{.low = 0, .without_low = true}, not_negative{.low = 0};
-  const std::string name = fmt::format("stage.{}", name_of(part));
+  const std::string name = fmt::format("stage.{}", part);
   all.push_back(word(name, {"rest", "quasi-static"}, {}, walls));
   all.push_back(number(name + ".velocity", "m/s", any, "at which they come together, half by each of a pair; below 0: apart"));
   all.push_back(number(name + ".rate", "1/s", any, "of the strain, compression positive"));
@@ -87,7 +86,7 @@ void add_forms_of(Part part, std::string_view walls, std::vector<FormKey>& all) 
   all.push_back(number(name + ".strain_amplitude", "", {.low = 0, .high = 1, .without_low = true}, "of the wave of the strain about that where the stage began"));
   all.push_back(number(name + ".period", "ms", positive, "of the wave"));
   all.push_back(word(name + ".wave", {"sine", "triangle"}, {}, "form of the wave; left out: sine"));
-  all.push_back(number(fmt::format("stage.until.stress_{}", name_of(part)), "MPa", not_negative, "mean over 0.1 % of strain, of a pair of both walls; 0: the walls are let go"));
+  all.push_back(number(fmt::format("stage.until.stress_{}", part), "MPa", not_negative, "mean over 0.1 % of strain, of a pair of both walls; 0: the walls are let go"));
 }
 // clang-format on
 
@@ -108,12 +107,14 @@ void add_shear(std::vector<FormKey>& all) {
 // clang-format on
 
 void add_stages(std::vector<FormKey>& all) {
-  add_forms_of(Part::yy, "bottom and top wall; \"rest\" where nothing is said of them", all);
-  add_forms_of(Part::xx, "left and right wall, in the same way", all);
-  add_forms_of(Part::bottom, "the bottom wall alone", all);
-  add_forms_of(Part::top, "the top wall alone", all);
-  add_forms_of(Part::left, "the left wall alone", all);
-  add_forms_of(Part::right, "the right wall alone", all);
+  add_forms_of("yy", "bottom and top wall, in space the two along y; \"rest\" where nothing is said of them",
+               all);
+  add_forms_of("xx", "left and right wall, in the same way", all);
+  add_forms_of("zz", "bottom and top wall in space, in the same way", all);
+  add_forms_of("bottom", "the bottom wall alone", all);
+  add_forms_of("top", "the top wall alone", all);
+  add_forms_of("left", "the left wall alone", all);
+  add_forms_of("right", "the right wall alone", all);
   add_shear(all);
 }
 

@@ -169,17 +169,24 @@ std::string box_unfit(const Case& c) {
   const auto repeats = repeats_of(c);
   if (repeats[1] && !repeats[0])
     return "box.y \"periodic\" with walls in x: turn the box, so that box.x is \"periodic\"";
-  if (repeats[1] && !(gravity_of(c) == Vec<2>{}))
-    return "gravity lets a cell that is periodic along both axes fall for ever: box.gravity_x and gravity_y "
-           "need "
-           "walls in y";
+  if (repeats[2] && !repeats[1])
+    return "box.z \"periodic\" with walls in y: turn the box, so that box.x and box.y are \"periodic\"";
+  const bool weightless = is_in_space(c) ? gravity_of<3>(c) == Vec<3>{} : gravity_of(c) == Vec<2>{};
+  if (repeats_in_height(c) && !weightless)
+    return "gravity lets a cell that is periodic along all axes fall for ever: box.gravity_x and gravity_y "
+           "need walls in y, in space in z";
+  if (c.box.gravity_z != 0 && !is_in_space(c))
+    return "box.gravity_z belongs to experiment.dimension = 3: in the plane box.gravity_y pulls down";
+  if (scope::is_path(c, LoadingPath::triaxial) && !is_in_space(c))
+    return "experiment.loading \"triaxial\" belongs to experiment.dimension = 3: in the plane it is "
+           "\"biaxial\"";
   if (c.box.open_top && (repeats[1] || c.stages.empty()))
     return "box.open_top needs walls in y, and [[stage]] that say when the top wall comes: the short paths "
            "move "
            "it from the start";
   if (scope::shearing.covers(c) && !repeats[1])
     return "experiment.loading \"shear\" shears a cell: it needs box.x and box.y \"periodic\"";
-  if (scope::is_path(c, LoadingPath::die) && (repeats[0] || repeats[1]))
+  if (scope::is_path(c, LoadingPath::die) && repeats[0])
     return "experiment.loading \"die\" needs walls: leave out box.x and box.y \"periodic\"";
   return "";
 }
@@ -281,10 +288,12 @@ const std::vector<Relation>& case_relations() {
         "loading.shear_rate"},
        path_incomplete},
       {{"experiment.dimension", "experiment.model", "experiment.loading", "mpm.integrator", "mpm.formulation",
-        "mpm.law", "mpm.cells", "sample.placed", "box.x", "box.y", "box.gravity_x", "box.gravity_y",
-        "contact.surface_energy", "contact.wall_surface_energy", "output.report"},
+        "mpm.law", "mpm.cells", "box.open_top", "contact.surface_energy", "contact.wall_surface_energy",
+        "output.report"},
        not_yet_in_space},
-      {{"experiment.loading", "box.x", "box.y", "box.gravity_x", "box.gravity_y", "box.open_top"}, box_unfit},
+      {{"experiment.loading", "box.x", "box.y", "box.z", "box.gravity_x", "box.gravity_y", "box.gravity_z",
+        "box.open_top"},
+       box_unfit},
   };
   return relations;
 }

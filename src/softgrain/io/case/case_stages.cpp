@@ -4,37 +4,32 @@
 
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/io/case/stage_words.hpp"
 #include "softgrain/io/case/words.hpp"
 #include "softgrain/loading/stage.hpp"
 
 namespace softgrain {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::array parts{Part::yy, Part::xx, Part::bottom, Part::top, Part::left, Part::right, Part::xy};
 
-/// What a part may do, in the words of a file.
-struct Manner {
-  const char* word;
-  Control control;
+/// Words of a part or of an end of a stage that a box of this dimension does not have.
+struct ForeignWord {
+  int dimension;
+  const char *part, *stress, *strain;  // strain: of the component, where it is one
+  const char* remedy;
 };
-constexpr std::array manners{Manner{"velocity", Control::velocity}, Manner{"rate", Control::rate},
-                             Manner{"stress", Control::stress}, Manner{"strain_amplitude", Control::strain}};
-
-/// What a stage may set, by the names of the keys.
-struct Setting {
-  const char* key;
-  std::optional<double> Settings::*value;
-};
-constexpr std::array all_settings{Setting{"contact.friction", &Settings::friction},
-                                  Setting{"contact.wall_friction", &Settings::wall_friction},
-                                  Setting{"solver.tolerance", &Settings::solver_tolerance},
-                                  Setting{"mpm.tolerance", &Settings::newton_tolerance},
-                                  Setting{"mpm.damping", &Settings::damping}};
+constexpr const char* pairs_alone = "in space side walls move in pairs, xx and yy, and no cell shears yet";
+constexpr std::array foreign_words{
+    ForeignWord{
+        2, "zz", "stress_zz", "strain_yy",
+        "zz belongs to experiment.dimension = 3; in the plane yy is the vertical component, and strain "
+        "its strain"},
+    ForeignWord{3, "xy", "stress_xy", "strain_xy", pairs_alone},
+    ForeignWord{3, "left", "stress_left", "", pairs_alone},
+    ForeignWord{3, "right", "stress_right", "", pairs_alone}};
 
 /// What is wrong with a stage, and where.
 struct StageFault {
@@ -64,8 +59,8 @@ void check_company(const StageText& text, const std::string& name, const Drive& 
 }
 
 /// Nothing where the stage says nothing of the part.
-std::optional<Drive> drive_of(const StageText& text, Part part) {
-  const std::string name = fmt::format("stage.{}", name_of(part));
+std::optional<Drive> drive_of(const StageText& text, Part part, int dimension) {
+  const std::string name = fmt::format("stage.{}", name_of(part, dimension));
   std::vector<std::string> said;
   Drive drive{.part = part};
   for (const Manner& manner : manners)
@@ -93,15 +88,31 @@ std::optional<Drive> drive_of(const StageText& text, Part part) {
   return said.empty() ? std::nullopt : std::optional(drive);
 }
 
-std::string stress_word(std::size_t part) {
-  return fmt::format("stress_{}", name_of(static_cast<Part>(part)));
+void refuse_foreign_words(const StageText& text, int dimension) {
+  const auto refuse_key = [&](const Origin& at, const char* remedy) {
+    throw StageFault{at, fmt::format("[[stage]]: {}", remedy)};
+  };
+  for (const ForeignWord& foreign : foreign_words) {
+    if (foreign.dimension != dimension) continue;
+    const std::string part = fmt::format("stage.{}", foreign.part);
+    const auto is_foreign = [&](const std::string& key) {
+      return key == part || key.starts_with(part + ".") ||
+             key == fmt::format("stage.until.{}", foreign.stress) ||
+             key == fmt::format("stage.until.{}", foreign.strain);
+    };
+    for (const auto& [key, value] : text.numbers)
+      if (is_foreign(key)) refuse_key(value.second, foreign.remedy);
+    for (const auto& [key, value] : text.words)
+      if (is_foreign(key)) refuse_key(value.second, foreign.remedy);
+  }
 }
 
-Until until_of(const StageText& text) {
+Until until_of(const StageText& text, int dimension) {
   const auto number = [&](const std::string& name) { return text.number("stage.until." + name); };
   Until until{.time = number("time")};
-  until.strain = {number("strain"), number("strain_xx"), number("strain_xy")};
-  for (std::size_t p = 0; p < parts_with_stress; ++p) until.stress[p] = number(stress_word(p));
+  const auto strains = strain_words(dimension);
+  for (std::size_t k = 0; k < strains.size(); ++k) until.strain[k] = number(strains[k]);
+  for (std::size_t p = 0; p < parts_with_stress; ++p) until.stress[p] = number(stress_word(p, dimension));
   until.packing_fraction = number("packing_fraction");
   until.overlap = number("overlap");
   until.rest = number("rest");
@@ -117,10 +128,11 @@ int repeat_of(const StageText& text) {
   return static_cast<int>(*repeat);
 }
 
-Stage stage_of(const StageText& text) {
-  Stage stage{.name = text.word("stage.name"), .until = until_of(text)};
+Stage stage_of(const StageText& text, int dimension) {
+  refuse_foreign_words(text, dimension);
+  Stage stage{.name = text.word("stage.name"), .until = until_of(text, dimension)};
   for (const Part part : parts)
-    if (const auto drive = drive_of(text, part)) stage.drives.push_back(*drive);
+    if (const auto drive = drive_of(text, part, dimension)) stage.drives.push_back(*drive);
   for (const Setting& setting : all_settings)
     stage.set.*setting.value = text.number(fmt::format("stage.set.{}", setting.key));
   stage.repeat = repeat_of(text);
@@ -132,7 +144,8 @@ Stage stage_of(const StageText& text) {
 bool fits_one_grain(const Stage& stage) {
   const Until& until = stage.until;
   for (const Drive& drive : stage.drives)
-    if (axis_of(drive.part) == 0 || (drive.control != Control::velocity && drive.control != Control::rest))
+    if (component_of(drive.part) != 0 ||
+        (drive.control != Control::velocity && drive.control != Control::rest))
       return false;
   for (const auto& stress : until.stress)
     if (stress) return false;
@@ -142,13 +155,15 @@ bool fits_one_grain(const Stage& stage) {
 /// What a stage asks of walls or of a cell that the box does not have; "" if nothing.
 std::string missing_in(const Case& c, const Stage& stage) {
   const auto repeats = repeats_of(c);
+  const int dimension = c.experiment.dimension;
   const auto is_missing = [&](Part part) -> std::string {
-    if (part == Part::xy)
+    if (part == Part::xy && dimension == 2)
       return repeats[0] && repeats[1] ? "" : "xy shears a cell: it needs box.x and box.y \"periodic\"";
-    const auto axis = static_cast<std::size_t>(axis_of(part));
-    if (part == Part::yy || part == Part::xx || !repeats[axis]) return "";
-    return fmt::format("box.{} is \"periodic\", there is no {} wall: write {}", axis == 0 ? "x" : "y",
-                       name_of(part), axis == 0 ? "xx" : "yy");
+    const auto axis = static_cast<std::size_t>(dimension == 3 ? axis_in<3>(part) : axis_of(part));
+    if (part == Part::yy || part == Part::xx || part == Part::xy || !repeats[axis]) return "";
+    constexpr std::array names{"x", "y", "z"};
+    return fmt::format("box.{0} is \"periodic\", there is no {1} wall: write {0}{0}", names[axis],
+                       name_of(part));
   };
   for (const Drive& drive : stage.drives)
     if (std::string what = is_missing(drive.part); !what.empty()) return what;
@@ -159,64 +174,16 @@ std::string missing_in(const Case& c, const Stage& stage) {
 }
 
 void check_stage(const Stage& stage, const StageText& text, const CaseDraft& draft) {
-  if (const std::string fault = fault_of(stage); !fault.empty())
+  if (const std::string fault = fault_of(stage, draft.the_case.experiment.dimension); !fault.empty())
     throw StageFault{text.at, "[[stage]]: " + fault};
   if (const std::string missing = missing_in(draft.the_case, stage); !missing.empty())
     throw StageFault{text.at, "[[stage]]: " + missing};
   if (draft.the_case.experiment.loading == LoadingPath::diametral && !fits_one_grain(stage))
     throw StageFault{text.at,
                      "[[stage]]: one grain between two walls (experiment.loading = \"diametral\") takes "
-                     "velocity and \"rest\" of yy, top and bottom until a time, strain, overlap or rest; for "
+                     "velocity and \"rest\" of yy (in space zz), top and bottom until a time, strain, "
+                     "overlap or rest; for "
                      "all else write experiment.loading = \"stages\""};
-}
-
-Json json_of(const Drive& drive) {
-  if (drive.control == Control::rest) return "rest";
-  Json json = Json::object();
-  for (const Manner& manner : manners)
-    if (manner.control == drive.control)
-      json[manner.word] = drive.control == Control::strain ? drive.amplitude : drive.value;
-  if (drive.speed > 0) json["speed"] = drive.speed;
-  if (drive.control == Control::stress && drive.amplitude > 0) json["stress_amplitude"] = drive.amplitude;
-  if (drive.amplitude > 0) json.update({{"period", drive.period}, {"wave", word_of(drive.wave)}});
-  return json;
-}
-
-Json json_of(const Until& until) {
-  Json json = Json::object();
-  const auto add = [&](const std::string& name, const std::optional<double>& value) {
-    if (value) json[name] = *value;
-  };
-  add("time", until.time);
-  add("strain", until.strain[0]);
-  add("strain_xx", until.strain[1]);
-  add("strain_xy", until.strain[2]);
-  for (std::size_t p = 0; p < parts_with_stress; ++p) add(stress_word(p), until.stress[p]);
-  add("packing_fraction", until.packing_fraction);
-  add("overlap", until.overlap);
-  add("rest", until.rest);
-  return json;
-}
-
-Json json_of(const Stage& stage) {
-  Json json = Json::object();
-  if (!stage.name.empty()) json["name"] = stage.name;
-  for (const Drive& drive : stage.drives) json[std::string(name_of(drive.part))] = json_of(drive);
-  json["until"] = json_of(stage.until);
-  for (const Setting& setting : all_settings)
-    if (const auto& value = stage.set.*setting.value) json["set"][setting.key] = *value;
-  if (stage.repeat != 1) json["repeat"] = stage.repeat;
-  if (!stage.repeat_from.empty()) json["repeat_from"] = stage.repeat_from;
-  return json;
-}
-
-/// A number or text as TOML writes it too, a table on one line.
-std::string toml_of(const Json& json) {
-  if (!json.is_object()) return json.dump();
-  std::vector<std::string> entries;
-  for (const auto& [key, value] : json.items())
-    entries.push_back(fmt::format("{} = {}", key, toml_of(value)));
-  return fmt::format("{{ {} }}", fmt::join(entries, ", "));
 }
 
 }  // namespace
@@ -236,7 +203,7 @@ void read_stages(const std::vector<StageText>& texts, CaseDraft& draft) {
   if (!draft.origins.contains("experiment.loading")) c.experiment.loading = LoadingPath::stages;
   for (const StageText& text : texts) {
     try {
-      c.stages.push_back(stage_of(text));
+      c.stages.push_back(stage_of(text, c.experiment.dimension));
       check_stage(c.stages.back(), text, draft);
       without_repeats(c.stages);
     } catch (const StageFault& fault) {
@@ -247,31 +214,6 @@ void read_stages(const std::vector<StageText>& texts, CaseDraft& draft) {
       return;
     }
   }
-}
-
-std::vector<std::string> keys_set_by_stages(const Case& the_case) {
-  std::vector<std::string> keys;
-  for (const Setting& setting : all_settings)
-    for (const Stage& stage : the_case.stages)
-      if (stage.set.*setting.value && (keys.empty() || keys.back() != setting.key))
-        keys.emplace_back(setting.key);
-  return keys;
-}
-
-std::string stages_text(const Case& the_case) {
-  std::string text;
-  for (const Stage& stage : the_case.stages) {
-    text += "\n[[stage]]\n";
-    const Json json = json_of(stage);
-    for (const auto& [key, value] : json.items()) text += fmt::format("{} = {}\n", key, toml_of(value));
-  }
-  return text;
-}
-
-std::string stages_json(const Case& the_case) {
-  Json list = Json::array();
-  for (const Stage& stage : the_case.stages) list.push_back(json_of(stage));
-  return list.dump();
 }
 
 }  // namespace softgrain

@@ -20,9 +20,7 @@ constexpr std::array later_keys{
     LaterKey{"kind.surface", "grains are disks"},
     LaterKey{"pair.restitution", "contact.restitution holds for all pairs"},
     LaterKey{"pair.adhesion", "pair.surface_energy makes grains and walls adhere"},
-    LaterKey{"box.z", "the box of a case in space has walls all round"},
     LaterKey{"box.die_friction", "a [[pair]] between a kind and \"wall\" holds for all walls"},
-    LaterKey{"stage.zz", "cases in space know the short paths of [loading] alone"},
 };
 
 bool is_below(std::string_view name, std::string_view above) {
@@ -272,6 +270,9 @@ void FormReader::imply_law_of_sizes() {
 void FormReader::finish_file() {
   imply_law_of_sizes();
   for (const auto& [table, at] : pairs_) read_pair(table, at);
+}
+
+void FormReader::finish_stages() {
   if (!stages_.empty() && draft_.issues.empty()) read_stages(stages_, draft_);
 }
 

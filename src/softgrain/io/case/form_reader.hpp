@@ -23,8 +23,10 @@ class FormReader {
   /// A key of a form in an ordinary table or a --set; false if there is none of this name.
   bool read_key(const std::string& name, const TomlValue& value, Origin origin);
 
-  /// What needs the whole file: pairs, and stages.
+  /// What needs the whole file: pairs.
   void finish_file();
+  /// What the tables [[stage]] say, when all else of the case is known.
+  void finish_stages();
 
   const std::string& sample_file() const { return sample_file_; }
   Origin sample_file_origin() const { return sample_file_origin_; }

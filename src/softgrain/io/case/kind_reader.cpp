@@ -169,7 +169,7 @@ void FormReader::settle_models() {
   c.experiment.model = has(GrainModel::mpm) ? GrainModel::mpm : c.kinds.front().model;
 }
 
-/// Shares of area become numbers of grains.
+/// Shares of area, in space of volume, become numbers of grains.
 void FormReader::count_grains() {
   Case& c = draft_.the_case;
   const bool numbers = std::ranges::all_of(kinds_, &KindText::has_number);
@@ -193,7 +193,9 @@ void FormReader::count_grains() {
   }
   std::vector<double> proportions;
   for (std::size_t k = 0; k < kinds_.size(); ++k)
-    proportions.push_back(kinds_[k].share / mean_square_diameter(diameter_law(c.kinds[k].sizes)));
+    proportions.push_back(kinds_[k].share / (is_in_space(c)
+                                                 ? mean_cube_diameter(diameter_law(c.kinds[k].sizes, 3))
+                                                 : mean_square_diameter(diameter_law(c.kinds[k].sizes))));
   const std::vector<int> counts = counts_in_proportion(proportions, c.sample.grains);
   for (std::size_t k = 0; k < kinds_.size(); ++k) {
     c.kinds[k].grains = counts[k];

@@ -19,12 +19,13 @@ std::string fault_in_words(const Case& c, const Misplaced& fault, const std::str
   const double share = fault.depth / c.sample.placed[fault.grain].radius;
   if (fault.other < 0)
     return fmt::format(
-        "the grain reaches {:.3g} of its radius out of the box, whose corner is (0, 0), box.width {:.6g} m "
-        "and "
-        "box.height {:.6g} m; at most {} are allowed: move it, or leave width and height out for a box round "
-        "all "
-        "grains",
-        share, c.box.width, c.box.height, largest_placed_overlap);
+        "the grain reaches {:.3g} of its radius out of the box, whose corner is (0, 0{}), box.width {:.6g} "
+        "m{} "
+        "and box.height {:.6g} m; at most {} are allowed: move it, or leave width{} and height out for a box "
+        "round all grains",
+        share, is_in_space(c) ? ", 0" : "", c.box.width,
+        is_in_space(c) ? fmt::format(", box.depth {:.6g} m", c.box.depth) : "", c.box.height,
+        largest_placed_overlap, is_in_space(c) ? ", depth" : "");
   return fmt::format(
       "the grain overlaps that of {} by {:.3g} of its radius; at most {} of the smaller radius are allowed: "
       "move "
@@ -63,19 +64,34 @@ PlacedLines place_grains(const FormReader& forms, CaseDraft& draft, std::vector<
   } catch (const UsageError& error) {
     return draft.add(origin, fmt::format("sample.file: {}", error.what())), PlacedLines{};
   }
-  SampleText text = read_sample_text(sources.back().text, forms.kind_names());
+  SampleText text =
+      read_sample_text(sources.back().text, forms.kind_names(), draft.the_case.experiment.dimension);
   for (const SampleIssue& issue : text.issues) draft.add({.at = issue.at, .source = 1}, issue.message);
   sample.placed = std::move(text.grains);
+  sample.placed_z = std::move(text.z);
   draft.origins["sample.placed"] = origin;
   if (!text.issues.empty()) draft.invalid.insert("sample.placed");
   return text.lines;
+}
+
+void check_heights(CaseDraft& draft) {
+  Case::Sample& sample = draft.the_case.sample;
+  if (!is_in_space(draft.the_case) || sample.placed.size() == sample.placed_z.size()) return;
+  if (draft.is_valid("sample.placed"))
+    draft.add(draft.origins["sample.placed"],
+              fmt::format("sample.placed_z must have a z for each of sample.placed: {} for {}; write "
+                          "sample.file, which has all",
+                          sample.placed_z.size(), sample.placed.size()));
+  sample.placed.clear();
+  sample.placed_z.clear();
 }
 
 void check_placement(CaseDraft& draft, const PlacedLines& lines) {
   const Case& c = draft.the_case;
   if (c.sample.placed.empty() || !draft.is_valid("sample.placed")) return;
   constexpr std::size_t most = 20;
-  std::vector<Misplaced> faults = misplaced_grains(sample_box(c));
+  std::vector<Misplaced> faults =
+      is_in_space(c) ? misplaced_grains(sample_solid_box(c)) : misplaced_grains(sample_box(c));
   if (faults.size() > most) faults.resize(most);
   for (const Misplaced& fault : faults) {
     if (lines.empty())

@@ -17,6 +17,9 @@ std::string read_limited(const std::string& path, const char* what);
 /// --set says. Its text becomes a source; what is wrong with it becomes issues.
 PlacedLines place_grains(const FormReader& forms, CaseDraft& draft, std::vector<Source>& sources);
 
+/// Of placed grains of a case in space: sample.placed_z must have as many as there are.
+void check_heights(CaseDraft& draft);
+
 /// Issues for placed grains that overlap, or lie outside the box.
 void check_placement(CaseDraft& draft, const PlacedLines& lines);
 

@@ -12,8 +12,8 @@ namespace softgrain {
 namespace {
 
 constexpr std::size_t most_issues = 20;
-const std::vector<std::string> column_names{"x", "y", "radius", "angle", "kind"};
-enum Column { x, y, radius, angle, kind };
+const std::vector<std::string> column_names{"x", "y", "radius", "angle", "kind", "z"};
+enum Column { x, y, radius, angle, kind, z };
 
 struct Cell {
   std::string_view text;  // without blanks around it
@@ -53,7 +53,7 @@ struct ColumnOfFile {
 
 class Reader {
  public:
-  explicit Reader(const std::vector<std::string>& kinds) : kinds_(kinds) {}
+  Reader(const std::vector<std::string>& kinds, int dimension) : kinds_(kinds), is_solid_(dimension == 3) {}
 
   SampleText read(std::string_view text) {
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // with which spreadsheets begin
@@ -77,7 +77,9 @@ class Reader {
   }
 
  private:
-  static std::string example() { return "'x [mm], y [mm], radius [mm]'"; }
+  std::string example() const {
+    return is_solid_ ? "'x [mm], y [mm], z [mm], radius [mm]'" : "'x [mm], y [mm], radius [mm]'";
+  }
 
   void add(int column, std::string message) {
     if (result_.issues.size() < most_issues) result_.issues.push_back({{line_, column}, std::move(message)});
@@ -86,8 +88,9 @@ class Reader {
   void read_header(std::string_view line) {
     const std::size_t before = result_.issues.size();
     for (const Cell& cell : cells_of(line)) read_column(cell);
-    for (const Column needed : {x, y, radius})
-      if (std::ranges::find(columns_, needed, &ColumnOfFile::column) == columns_.end() &&
+    for (const Column needed : {x, y, z, radius})
+      if ((needed != z || is_solid_) &&
+          std::ranges::find(columns_, needed, &ColumnOfFile::column) == columns_.end() &&
           result_.issues.size() == before)
         add(1, fmt::format("no column '{}': the first line names the columns, as in {}", column_names[needed],
                            example()));
@@ -108,6 +111,11 @@ class Reader {
       return add(cell.column, fmt::format("unknown column '{}'{}; columns are {}", name,
                                           did_you_mean(name, column_names), fmt::join(column_names, ", ")));
     const auto column = static_cast<Column>(found - column_names.begin());
+    if (column == z && !is_solid_)
+      return add(cell.column, "column 'z' belongs to experiment.dimension = 3: leave it out");
+    if (column == angle && is_solid_)
+      return add(cell.column,
+                 "not yet: column 'angle' in space, where sample.seed turns each sphere: leave it out");
     if (std::ranges::find(columns_, column, &ColumnOfFile::column) != columns_.end())
       return add(cell.column, fmt::format("column '{}' stands twice", name));
     ColumnOfFile read{column, column == angle || column == kind ? "" : "m"};
@@ -131,16 +139,19 @@ class Reader {
                                 "between them",
                                 cells.size(), columns_.size()));
     PlacedGrain grain;
+    double height = 0;
     bool valid = true;
-    for (std::size_t k = 0; k < cells.size(); ++k) valid = read_cell(cells[k], columns_[k], grain) && valid;
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      valid = read_cell(cells[k], columns_[k], grain, height) && valid;
     if (!valid) return;
     if (result_.grains.size() == most_placed_grains)
       return add(1, fmt::format("not yet: more than {} grains in a file", most_placed_grains));
     result_.grains.push_back(grain);
+    if (is_solid_) result_.z.push_back(height);
     result_.lines.push_back(line_);
   }
 
-  bool read_cell(const Cell& cell, const ColumnOfFile& column, PlacedGrain& grain) {
+  bool read_cell(const Cell& cell, const ColumnOfFile& column, PlacedGrain& grain, double& height) {
     const std::string& name = column_names[column.column];
     if (column.column == kind) return read_kind(cell, grain);
     double value = 0;
@@ -157,6 +168,7 @@ class Reader {
     }
     (column.column == x       ? grain.centre[0]
      : column.column == y     ? grain.centre[1]
+     : column.column == z     ? height
      : column.column == angle ? grain.angle
                               : grain.radius) = value;
     return true;
@@ -173,6 +185,7 @@ class Reader {
   }
 
   std::vector<std::string> kinds_;
+  bool is_solid_;
   std::vector<ColumnOfFile> columns_;
   bool has_header_issue_ = false;
   int line_ = 1;
@@ -181,8 +194,8 @@ class Reader {
 
 }  // namespace
 
-SampleText read_sample_text(std::string_view text, const std::vector<std::string>& kinds) {
-  return Reader(kinds).read(text);
+SampleText read_sample_text(std::string_view text, const std::vector<std::string>& kinds, int dimension) {
+  return Reader(kinds, dimension).read(text);
 }
 
 }  // namespace softgrain

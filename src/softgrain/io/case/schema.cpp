@@ -57,7 +57,7 @@ std::vector<Key> all_keys() {
   return {
       KEY(experiment.loading, "", its_words(),
           "the loading path (docs/guide/loading.md); diametral: one grain between two walls, the top one moves; the others: "
-          "grains in a box; stages: what the tables [[stage]] say, as where they stand alone"),
+          "grains in a box; biaxial in the plane, triaxial in space; stages: what the tables [[stage]] say, as where they stand alone"),
       KEY(experiment.model, "", its_words(),
           "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other; mpm: an "
           "elastic body by the material point method; rigid: a rigid body, which meets others as those of mpm do"),
@@ -124,7 +124,7 @@ std::vector<Key> all_keys() {
       KEY(solver.precision, "", its_words(),
           "of impulses and velocities within the sweeps of a bpm step; double for tolerances below 1e-11", with_bpm),
 
-      KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top wall; isotropic, biaxial: of opposite walls towards each other, half by each; of walls that keep a stress: at most; stages: left out, the fastest of theirs; quasi-static: as loading.inertial_number says", everywhere, "quasi-static"),
+      KEY(loading.wall_velocity, "m/s", positive(), "velocity of the top wall; isotropic, biaxial, triaxial: of opposite walls towards each other, half by each; of walls that keep a stress: at most; stages: left out, the fastest of theirs; quasi-static: as loading.inertial_number says", everywhere, "quasi-static"),
       KEY(loading.max_strain, "", between(0, 3),
           "strain at the end: eps = -ln(1 - d/R), d half the travel of the wall; in a box: eps = ln(h_start/h); die: at "
           "which max_stress must be reached", with_short_path),
@@ -138,11 +138,11 @@ std::vector<Key> all_keys() {
       KEY(loading.unload_at, "", positive(),
           "ascending strains at which the wall turns back once; [] for none", turning),
       KEY(loading.unload_by, "", positive(), "strain given back before loading again", with_unloading),
-      KEY(loading.hold, "us", at_least(0), "rest of the wall wherever it turns, and at the end; biaxial, die: for which the stress is kept before it goes on; die: of the rest after ejection too; relaxation: of the rest", with_short_path),
+      KEY(loading.hold, "us", at_least(0), "rest of the wall wherever it turns, and at the end; biaxial, triaxial, die: for which the stress is kept before it goes on; die: of the rest after ejection too; relaxation: of the rest", with_short_path),
       KEY(loading.hold_stress, "MPa", at_least(0),
           "vertical stress at which the walls leave their path: those that move keep it for loading.hold, which ends the run; "
-          "isotropic: xx and yy each; 0: none (in a box)", packing_turning),
-      KEY(loading.confining_stress, "MPa", at_least(0), "that the side walls keep (biaxial), that the periodic cell keeps (shear)", confining),
+          "isotropic: xx and yy each, in space zz too; 0: none (in a box)", packing_turning),
+      KEY(loading.confining_stress, "MPa", at_least(0), "that the side walls keep (biaxial, triaxial), that the periodic cell keeps (shear)", confining),
       KEY(loading.shear_rate, "1/s", positive(), "of the shear strain; quasi-static: as loading.inertial_number says (shear)", shearing, "quasi-static"),
       KEY(loading.inertial_number, "", positive(),
           "I of a speed or rate that is \"quasi-static\", at the stress that the loading names, in a box a hundredth of "
@@ -177,14 +177,18 @@ std::vector<Key> all_keys() {
           "how many grains have each diameter of the list, in proportion; neither shares nor numbers: as many of each", listed),
       KEY(sample.placed, "", anything(),
           "the grains in their places, [x, y, radius, angle] of each in m and rad, and the number of its kind but 0: what a run writes for sample.file", placed),
+      KEY(sample.placed_z, "m", anything(), "z of each of sample.placed in space", placed_in_space),
       KEY(box.x, "", its_words(), "what ends the box along x: walls, or its own image", in_a_box),
       KEY(box.y, "", its_words(), "the same along y; periodic only if x is", in_a_box),
+      KEY(box.z, "", its_words(), "the same along z in space; periodic only if x and y are", box_in_space),
       KEY(box.gravity_x, "m/s^2", anything(), "acceleration of gravity along x", in_a_box),
-      KEY(box.gravity_y, "m/s^2", anything(), "the same along y: -9.81 m/s^2 pulls down", in_a_box),
+      KEY(box.gravity_y, "m/s^2", anything(), "the same along y: -9.81 m/s^2 pulls down, in space sideways", in_a_box),
+      KEY(box.gravity_z, "m/s^2", anything(), "the same along z, upwards in space", box_in_space),
       KEY(box.open_top, "", anything(),
           "the box has no top wall until a stage moves `top` or `yy`; so long its height is that of the highest grain", with_stages),
       KEY(box.width, "mm", at_least(0), "of the box of placed grains; auto: from the first to the last point of all grains", placed, "auto"),
       KEY(box.height, "mm", at_least(0), "of the box of placed grains; auto: from the lowest to the highest point of all grains", placed, "auto"),
+      KEY(box.depth, "mm", at_least(0), "of the box of placed spheres along y; auto: as far as the grains reach", placed_in_space, "auto"),
 
       KEY(output.samples, "", from_to(1, 1e6), "rows of series.csv, evenly over the run"),
       KEY(output.snapshots, "", from_to(0, 1e5), "restart points, evenly over the run"),

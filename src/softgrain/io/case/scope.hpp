@@ -54,9 +54,14 @@ inline bool is_random(const Case& c) {
   return is_in_a_box(c) && (c.sample.placed.empty() || c.sample.places == Places::pour);
 }
 inline bool has_sizes(const Case& c, SizeLaw law) { return is_random(c) && c.sample.sizes == law; }
-inline constexpr Scope with_chance{"on bpm or random grains in a box",
-                                   [](const Case& c) { return is_bpm(c) || is_random(c); }};
+inline constexpr Scope with_chance{"on bpm, random grains in a box or placed spheres", [](const Case& c) {
+                                     return is_bpm(c) || is_random(c) || (is_placed(c) && is_in_space(c));
+                                   }};
 inline constexpr Scope placed{"in a box of placed grains (sample.file)", is_placed};
+inline constexpr Scope placed_in_space{"on placed spheres (sample.file)",
+                                       [](const Case& c) { return is_placed(c) && is_in_space(c); }};
+inline constexpr Scope box_in_space{"in a box in space",
+                                    [](const Case& c) { return is_in_a_box(c) && is_in_space(c); }};
 inline constexpr Scope random{"on random grains in a box", is_random};
 inline constexpr Scope random_between{
     "on random grains in a box, with sample.sizes uniform or lognormal",
@@ -87,13 +92,14 @@ inline constexpr Scope to_a_stress{"in a box, on paths that are not stages",
                                    [](const Case& c) { return is_in_a_box(c) && c.stages.empty(); }};
 inline constexpr Scope bpm_to_an_overlap{"on bpm in a box, on compaction, isotropic and relaxation paths",
                                          [](const Case& c) { return is_bpm(c) && to_a_fraction.covers(c); }};
-inline constexpr Scope biaxial{"on biaxial paths",
-                               [](const Case& c) { return is_path(c, LoadingPath::biaxial); }};
+inline constexpr Scope biaxial{"on biaxial and triaxial paths", [](const Case& c) {
+                                 return is_path(c, LoadingPath::biaxial) || is_path(c, LoadingPath::triaxial);
+                               }};
 inline constexpr Scope quasi_static{"where a speed or a rate is \"quasi-static\"",
                                     [](const Case& c) { return c.loading.quasi_static; }};
 inline constexpr Scope shearing{"on shear paths",
                                 [](const Case& c) { return is_path(c, LoadingPath::shear); }};
-inline constexpr Scope confining{"on biaxial and shear paths",
+inline constexpr Scope confining{"on biaxial, triaxial and shear paths",
                                  [](const Case& c) { return biaxial.covers(c) || shearing.covers(c); }};
 inline constexpr Scope die{"on die paths", [](const Case& c) { return is_path(c, LoadingPath::die); }};
 inline constexpr Scope relaxing{"on relaxation paths",

@@ -9,11 +9,15 @@ namespace softgrain {
 
 template <>
 std::span<const Word<LoadingPath>> words_of() {
-  static constexpr std::array words{
-      Word{LoadingPath::diametral, "diametral"},   Word{LoadingPath::compaction, "compaction"},
-      Word{LoadingPath::isotropic, "isotropic"},   Word{LoadingPath::biaxial, "biaxial"},
-      Word{LoadingPath::shear, "shear"},           Word{LoadingPath::die, "die"},
-      Word{LoadingPath::relaxation, "relaxation"}, Word{LoadingPath::stages, "stages"}};
+  static constexpr std::array words{Word{LoadingPath::diametral, "diametral"},
+                                    Word{LoadingPath::compaction, "compaction"},
+                                    Word{LoadingPath::isotropic, "isotropic"},
+                                    Word{LoadingPath::biaxial, "biaxial"},
+                                    Word{LoadingPath::triaxial, "triaxial"},
+                                    Word{LoadingPath::shear, "shear"},
+                                    Word{LoadingPath::die, "die"},
+                                    Word{LoadingPath::relaxation, "relaxation"},
+                                    Word{LoadingPath::stages, "stages"}};
   return words;
 }
 

@@ -88,3 +88,19 @@ TEST_CASE("a table with an error in every line stops after twenty, and one with 
   for (std::size_t line = 0; line <= most_placed_grains; ++line) large += "1, 1, 1\n";
   CHECK(refusal(large).starts_with("10002:1: not yet: more than 10000 grains"));
 }
+
+TEST_CASE("a file of spheres has z and no angle, one of disks has no z") {
+  const std::vector<std::string> any{""};
+  const SampleText spheres = read_sample_text("z [mm], x [mm], y [mm], radius [mm]\n3, 1, 2, 0.5\n", any, 3);
+  CHECK(spheres.issues.empty());
+  REQUIRE(spheres.grains.size() == 1);
+  CHECK(spheres.grains[0].centre[0] == doctest::Approx(1e-3));
+  CHECK(spheres.z == std::vector<double>{3e-3});
+  const auto issue = [&](const std::string& text, int dimension) {
+    const SampleText read = read_sample_text(text, any, dimension);
+    return read.issues.empty() ? "" : read.issues.front().message;
+  };
+  CHECK(issue("x, y, radius\n1, 1, 1\n", 3).find("no column 'z'") != std::string::npos);
+  CHECK(issue("x, y, z, radius\n1, 1, 1, 1\n", 2).find("experiment.dimension = 3") != std::string::npos);
+  CHECK(issue("x, y, z, radius, angle\n1, 1, 1, 1, 0\n", 3).find("sample.seed turns") != std::string::npos);
+}

@@ -1,0 +1,59 @@
+#include <algorithm>
+
+#include "softgrain/core/parallel.hpp"
+#include "softgrain/rigid/narrow_sweeps.hpp"
+
+namespace softgrain {
+
+void NarrowSweeps::take_bodies(const RigidParticles<2>& particles, const RigidContacts<2>& contacts,
+                               double relaxation) {
+  bodies_ = static_cast<int>(particles.velocity.size());
+  if (relaxation_ != static_cast<float>(relaxation)) blocks_.clear();
+  relaxation_ = static_cast<float>(relaxation);
+  inertia_ratio_ = static_cast<float>(particles.inertia_ratio);
+  blocks_.resize(contacts.blocks.empty() ? 0 : contacts.blocks.back().list + 1);
+  listed_.clear();
+  for (const ContactBlock& block : contacts.blocks) listed_.push_back(block.list);
+  velocity_.resize(bodies_ + blocks_.size());
+  spin_.resize(bodies_ + blocks_.size());
+  start_.resize(bodies_), end_.resize(bodies_);
+  spin_start_.resize(bodies_), spin_end_.resize(bodies_);
+  sweeps_ = 0;
+  if (static_cast<int>(list_of_.size()) != bodies_) {
+    list_of_.assign(bodies_, -1);
+    for (int i = 0, list = -1; i < particles.size(); ++i) {
+      if (i == 0 || particles.grain[i] != particles.grain[i - 1]) ++list;
+      list_of_[i] = list;
+    }
+  }
+  parallel_ranges(bodies_, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const Vec<2>& v = particles.velocity[i];
+      velocity_[i] = {static_cast<float>(v[0]), static_cast<float>(v[1])};
+      spin_[i] = static_cast<float>(particles.spin[i][0]);
+    }
+  });
+}
+
+/// The bodies of a grain that have contacts inside it.
+void NarrowSweeps::take_range(const RigidContacts<2>& contacts, const ContactBlock& listed, Block& block) {
+  block.bodies = {bodies_, 0};
+  for (int c = listed.begin(); c < listed.end(); ++c) {
+    block.bodies.begin = std::min(block.bodies.begin, contacts.body_a[c]);
+    block.bodies.end = std::max(block.bodies.end, contacts.body_b[c] + 1);
+  }
+}
+
+/// Bodies of grains that have contacts between grains.
+void NarrowSweeps::take_touched(const RigidContacts<2>& contacts, const ContactBlock& between) {
+  std::vector<int> bodies;
+  for (int c = between.begin(); c < between.end(); ++c)
+    bodies.push_back(contacts.body_a[c]), bodies.push_back(contacts.body_b[c]);
+  std::sort(bodies.begin(), bodies.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  touched_.clear();
+  for (const int body : bodies)
+    if (list_of_[body] >= 0) touched_.push_back({.body = body, .list = list_of_[body]});
+}
+
+}  // namespace softgrain
