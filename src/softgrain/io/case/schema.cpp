@@ -157,9 +157,7 @@ std::vector<Key> all_keys() {
 
       KEY(sample.seed, "", at_least(0),
           "seed of the random numbers; another seed is another sample of the same grain", with_chance),
-      KEY(sample.places, "", its_words(),
-          "of the grains at the start; pour: as they lie after they have fallen along -y as rigid disks, with the friction of the case, into a box "
-          "that packing_fraction and aspect would fill: it is as wide as that, and as high as they lie", random),
+      KEY(sample.places, "", its_words(), "of the grains at the start; pour: as they lie after a fall along -y into a box of the width that packing_fraction and aspect mean", random),
       KEY(sample.grains, "", from_to(1, 1e6), "grains in the box", random),
       KEY(sample.packing_fraction, "", between(0, 1), "undeformed grain area (volume in space) over that of the box at the start, below 0.8", random),
       KEY(sample.aspect, "", from_to(1e-4, 1e4), "width over height of the box at the start; in space its base is a square", random),
