@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "softgrain/experiment/adhesion_of_case.hpp"
+#include "softgrain/io/case/case_text.hpp"
 #include "softgrain/io/case/case_file.hpp"
 #include "support/case_refusal.hpp"
 
