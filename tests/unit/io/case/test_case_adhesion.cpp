@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "softgrain/experiment/adhesion_of_case.hpp"
-#include "softgrain/io/case/case_text.hpp"
 #include "softgrain/io/case/case_file.hpp"
+#include "softgrain/io/case/case_text.hpp"
 #include "support/case_refusal.hpp"
 
 using namespace softgrain;
