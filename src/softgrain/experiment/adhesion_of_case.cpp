@@ -64,6 +64,7 @@ void for_each_adhesion(const Case& c, const Visit& visit) {
   for (int k = 0; k < count; ++k)
     for (int other = Case::Pair::wall; other <= k; ++other) {
       const bool at_wall = other == Case::Pair::wall;
+      if (!at_wall && !is_in_a_box(c)) continue;  // one grain
       double w = at_wall ? c.contact.wall_surface_energy : c.contact.surface_energy;
       double range = c.contact.adhesion_range;
       if (const Case::Pair* pair = named(c, k, other)) {

@@ -80,7 +80,7 @@ TEST_CASE("a key that is said to have no effect changes no bit of the motion") {
 TEST_CASE("a note names keys that do nothing, and where they would act") {
   const std::string text =
       "[experiment]\nmodel = 'mpm'\n[contact]\npush_out = 1\n[sample]\ngrains = 5\n"
-      "[solver]\nmin_sweeps = 10\n";  // its default: no wish
+      "[solver]\nmin_sweeps = 8\n";  // its default: no wish
   const CaseReading reading = parse_case_with_notes(text, "case.toml", {"solver.max_sweeps=50"});
   CHECK(reading.without_effect ==
         std::vector<std::string>{"contact.push_out", "solver.max_sweeps", "sample.grains"});
