@@ -69,8 +69,7 @@ std::string median_cut_off(const Case& c) {
   if (!scope::lognormal.covers(c) || (low <= median && median <= high)) return "";
   return fmt::format(
       "sample.smallest_diameter and sample.largest_diameter must enclose sample.median_diameter, whose law "
-      "they "
-      "cut off: {} m is not in [{} m, {} m]",
+      "they cut off: {} m is not in [{} m, {} m]",
       median, low, high);
 }
 
