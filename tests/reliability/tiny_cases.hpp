@@ -38,6 +38,7 @@ inline Words tiny_path(const std::string& name) {
     add({"loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.17", "loading.unload_at=[0.15]",
          "loading.unload_by=0.04", "loading.max_stress=0", "loading.max_packing_fraction=0",
          "sample.packing_fraction=0.62", "kind.rigid.share=0.5"});
+  if (name == "sticky_grains") add({"sample.grains=12", "loading.max_strain=0.35"});
   if (name == "poured") add({"time.step=\"1 ms\"", "loading.max_strain=0.35"});
   if (name == "jamming")
     add({"sample.grains=9", "loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.15"});

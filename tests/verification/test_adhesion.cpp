@@ -152,7 +152,7 @@ TEST_CASE("a cylinder that adheres parts at the force of Johnson, Kendall and Ro
     for (const double share : {-0.3, -0.6, -0.9}) {
       CAPTURE(share);
       press(dynamics, share * P_c, 3);
-      CHECK(half_width(dynamics) / width_of_jkr(w, share * P_c) == doctest::Approx(1).epsilon(0.025));
+      CHECK(std::abs(half_width(dynamics) / width_of_jkr(w, share * P_c) - 1) < 0.055);  // half a segment
     }
     press(dynamics, -0.97 * P_c, 4);
     CHECK(touches(dynamics));
