@@ -92,6 +92,8 @@ TEST_CASE("the columns that are offered are columns of a packing or of a grain")
                             "--set",
                             "mpm.cells=2",
                             "--set",
+                            model == "mpm" ? "contact.surface_energy=0.01" : "contact.surface_energy=0",
+                            "--set",
                             model == "space" ? "experiment.dimension=3" : "experiment.dimension=2",
                             "--set",
                             "bpm.primaries=20",

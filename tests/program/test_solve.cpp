@@ -38,7 +38,8 @@ TEST_CASE("solve converges on all problems by default and says so as JSON") {
     CHECK(result.err.empty());
     const auto json = nlohmann::json::parse(result.out);
     CHECK(json.at("file") == file);
-    CHECK(json.at("method") == "nesterov");
+    // where Gauss-Seidel that starts ahead is there first
+    CHECK(json.at("method") == (problem.name == std::string("local_problem_test") ? "nlgs" : "nesterov"));
     CHECK(json.at("contacts") == problem.contacts);
     CHECK(json.at("dimension") == problem.dimension);
     CHECK(json.at("sweeps") > 10);
@@ -54,7 +55,7 @@ TEST_CASE("solve shows a table to people") {
   const ProcessResult result = solve({small, "--method", "nlgs", "--tolerance", "1e-5"});
   CHECK(result.exit_code == 0);
   CHECK(result.out.find("89 contacts in 2D") != std::string::npos);
-  CHECK(result.out.find("nlgs, 40 sweeps") != std::string::npos);
+  CHECK(result.out.find("nlgs, 30 sweeps") != std::string::npos);
   CHECK(result.out.find("converged to 1e-05") != std::string::npos);
 }
 

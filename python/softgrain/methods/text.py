@@ -28,6 +28,7 @@ LOADINGS = {
     "diametral": "squeezed between two rigid walls, the upper one moving at {speed}",
     "compaction": "compacted in a box of rigid walls by the upper wall, which moved at {speed}",
     "isotropic": "compacted isotropically by four rigid walls, those opposite coming together at {speed}",
+    "triaxial": "compressed triaxially by rigid walls at {speed}, four side walls keeping {confining}",
     "biaxial": "compressed biaxially by rigid walls at {speed}, the side walls keeping {confining}",
     "shear": "sheared with a periodic cell that keeps {confining}",
     "die": "compacted in a die of rigid walls at {speed}",

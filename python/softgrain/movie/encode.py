@@ -82,10 +82,12 @@ def write_png(film, folder, comment):
 
 
 def _palette(film):
-    """The colours that carry meaning; beside them those of the first frame, one in the middle and the last, however rare."""
+    """The colours that carry meaning, and the paper; beside them those of the first frame, one in the middle and the last,
+    however rare."""
+    fixed = np.concatenate([film.key_colours, film[0][:1, 0]]).astype(np.uint8)
     some = np.concatenate([film[k] for k in sorted({0, len(film) // 2, len(film) - 1})])
     found = Image.fromarray(np.unique(some.reshape(-1, 3), axis=0)[None])
-    others = found.quantize(PALETTE - len(film.key_colours), method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    others = found.quantize(PALETTE - len(fixed), method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     palette = Image.new("P", (1, 1))
-    palette.putpalette((film.key_colours.tobytes() + bytes(others.getpalette()))[: 3 * PALETTE])
+    palette.putpalette((fixed.tobytes() + bytes(others.getpalette()))[: 3 * PALETTE])
     return palette
