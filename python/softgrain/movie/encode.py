@@ -8,6 +8,7 @@ from PIL.PngImagePlugin import PngInfo
 
 FFMPEG = "ffmpeg"
 PALETTE = 256  # colours of a GIF
+NEAR = 8  # of 255: Pillow may take a colour this near for another
 ONE_FRAME = "frame_{:05}.png"
 SMOOTHING = 3  # of frames that become a WebP
 LAST = 1500  # how long its last frame stands [ms]
@@ -89,5 +90,7 @@ def _palette(film):
     found = Image.fromarray(np.unique(some.reshape(-1, 3), axis=0)[None])
     others = found.quantize(PALETTE - len(fixed), method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     palette = Image.new("P", (1, 1))
-    palette.putpalette((fixed.tobytes() + bytes(others.getpalette()))[: 3 * PALETTE])
+    others = np.array(others.getpalette(), np.uint8).reshape(-1, 3)
+    apart = np.abs(others[:, None].astype(int) - fixed).max(axis=2).min(axis=1)
+    palette.putpalette((fixed.tobytes() + others[apart >= NEAR].tobytes())[: 3 * PALETTE])
     return palette
