@@ -94,7 +94,7 @@ Violation NarrowSweeps::sweep_contacts(Block& block, float b) {
 Violation NarrowSweeps::sweep_block(int k, double ahead, bool measured) {
   Block& block = blocks_[listed_[k]];
   const auto b = static_cast<float>(ahead);
-  const auto [begin, end] = block.bodies;
+  const int begin = block.bodies.begin, end = block.bodies.end;
   const bool spins = !block.frictional.eights.empty();
   const auto go_ahead = [&](auto* now, auto* start, const auto* last, const auto& add) {
     for (int i = begin; i < end; ++i) {
