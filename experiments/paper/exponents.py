@@ -17,6 +17,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from scipy.stats import t as student
 
+from softgrain.reproduce.tables import write_rows
+
 CENTRES, LASTS = (0.78, 0.80, 0.82, 0.84, 0.85, 0.86), (0.90, 0.96, 1.0)
 KINDS = ("z", "z_no_rattlers", "z_with_walls")
 HEADER = ("runs", "friction", "Z", "Phi_c", "last Phi", "samples", "exponent", "standard deviation", "half of the 95 % interval")
@@ -102,10 +104,8 @@ def main():
         name, _, path = word.partition("=")
         named[name] = Path(path)
     rows = table(named)
-    with open(options.output / "exponents.csv", "w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(HEADER)
-        writer.writerows([f"{value:.3g}" if isinstance(value, float) else value for value in row] for row in rows)
+    write_rows(options.output / "exponents.csv", HEADER,
+               ([f"{value:.3g}" if isinstance(value, float) else value for value in row] for row in rows))
     draw(rows, options.output / "exponents.png")
 
 

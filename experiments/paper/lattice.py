@@ -6,7 +6,6 @@ Runs of `compaction-mpm` with mpm.formulation = "updated_lagrangian". Writes DIR
 """
 
 import argparse
-import csv
 from pathlib import Path
 
 import matplotlib
@@ -18,6 +17,7 @@ import numpy as np
 import softgrain
 import softgrain.measure
 from softgrain.reproduce.geometry import coordination_of_load
+from softgrain.reproduce.tables import write_rows
 
 BEARS = 20e3  # [Pa] of the bottom wall
 WINDOW = 0.01  # of strain, over which its stress is averaged
@@ -65,10 +65,8 @@ def main():
     parser.add_argument("-o", "--output", type=Path, required=True)
     options = parser.parse_args()
     rows = sorted(row(softgrain.open(Path(path))) for path in options.runs)
-    with open(options.output / "lattice.csv", "w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(HEADER)
-        writer.writerows([f"{value:.4g}" if isinstance(value, float) else value for value in r] for r in rows)
+    write_rows(options.output / "lattice.csv", HEADER,
+               ([f"{value:.4g}" if isinstance(value, float) else value for value in r] for r in rows))
     draw(rows, options.output / "lattice.png")
 
 

@@ -4,12 +4,16 @@ import base64
 import json
 import os
 import select
+import shutil
 import signal
 import subprocess
 import tempfile
 import time
 import unittest
 from pathlib import Path
+
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 
 class Browser:
@@ -146,7 +150,7 @@ class Browser:
 class BrowserTest(unittest.TestCase):
     """Tests that share one browser and one folder; a test of its own begins with nothing logged and nothing asked for."""
 
-    program = None  # of Chromium
+    program = CHROMIUM
 
     @classmethod
     def setUpClass(cls):

@@ -10,7 +10,8 @@ import time
 import unittest
 from pathlib import Path
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+from browser import CHROMIUM, BrowserTest
+
 try:
     import h5py
     import numpy as np
@@ -21,8 +22,6 @@ except ImportError as error:
 if CHROMIUM is None:
     print("skipped: the page is not tested in a browser: no chromium; tools/install_dependencies.sh --with viewer")
     sys.exit(77)
-
-from browser import BrowserTest  # noqa: E402
 
 PROGRAM = sys.argv[1]
 PICTURES = Path(sys.argv[2]) if len(sys.argv) > 2 else None
@@ -48,8 +47,6 @@ def make_runs(folder):
 
 
 class Page(BrowserTest):
-    program = CHROMIUM
-
     @classmethod
     def setUpClass(cls):
         super().setUpClass()

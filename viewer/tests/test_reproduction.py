@@ -2,13 +2,13 @@
 
 Exit code 77, for CTest's "skipped", where there is no Chromium or no Matplotlib."""
 
-import shutil
 import sys
 import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+from browser import CHROMIUM, BrowserTest
+
 try:
     from matplotlib.figure import Figure
 except ImportError as error:
@@ -18,7 +18,6 @@ if CHROMIUM is None:
     print("skipped: the page is not tested in a browser: no chromium; tools/install_dependencies.sh --with viewer")
     sys.exit(77)
 
-from browser import BrowserTest  # noqa: E402
 from softgrain.reproduce import causes, page  # noqa: E402
 from softgrain.reproduce.verdict import Verdict  # noqa: E402
 
@@ -27,8 +26,6 @@ FOUND = [Verdict("1", "a statement", "5.4", True), Verdict("3", "a < b & c", "0.
 
 
 class ReproductionPage(BrowserTest):
-    program = CHROMIUM
-
     @classmethod
     def setUpClass(cls):
         super().setUpClass()

@@ -17,14 +17,14 @@ def write(results, folder):
     for (way, model, friction), curves in results.packings.items():
         rows = [(seed, *(f"{getattr(curve, name)[k]:.5g}" for name in COLUMNS))
                 for seed, curve in enumerate(curves, 1) for k in _some(curve.strain.size)]
-        _write(folder / f"{way}_{model}_mu{friction:g}.csv", HEADER, rows)
+        write_rows(folder / f"{way}_{model}_mu{friction:g}.csv", HEADER, rows)
     for name, runs in results.grains.items():
         run = runs[0]
         if run.elastic:
             header, columns = ("strain", "F/(E* R)"), reduced_force(run)
         else:
             header, columns = ("strain", "stress[Pa]"), (run.series["strain"], measure.vertical_stress(run.series))
-        _write(folder / f"{name}.csv", header,
+        write_rows(folder / f"{name}.csv", header,
                [tuple(f"{column[k]:.6g}" for column in columns) for k in _some(columns[0].size, 400)])
 
 
@@ -32,7 +32,7 @@ def _some(count, most=ROWS):
     return np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
 
 
-def _write(path, header, rows):
+def write_rows(path, header, rows):
     with path.open("w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(header)

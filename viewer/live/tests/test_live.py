@@ -10,7 +10,9 @@ import sys
 import unittest
 from pathlib import Path
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
+from browser import CHROMIUM, BrowserTest  # noqa: E402
+
 PROGRAM, PAGE = sys.argv[1], Path(sys.argv[2])
 PICTURES = Path(sys.argv[3]) if len(sys.argv) > 3 else None
 try:
@@ -23,16 +25,11 @@ if CHROMIUM is None or not PAGE.exists():
     print("skipped: no chromium (tools/install_dependencies.sh --with viewer), or no live page (tools/build_live)")
     sys.exit(77)
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
-from browser import BrowserTest  # noqa: E402
-
 STAGE = "document.querySelector('.stage').getBoundingClientRect()"
 TOLERANCE = 1e-9
 
 
 class LivePage(BrowserTest):
-    program = CHROMIUM
-
     def tearDown(self):
         super().tearDown()
         self.assertEqual(self.browser.errors, [])
