@@ -7,7 +7,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
-from browser import CHROMIUM, BrowserTest
+from browser import CHROMIUM, BrowserTest  # noqa: E402
 
 try:
     from matplotlib.figure import Figure
