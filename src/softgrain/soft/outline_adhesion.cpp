@@ -8,28 +8,17 @@
 #include "softgrain/soft/carried_impulses.hpp"
 
 namespace softgrain {
-namespace {
-
-/// Contacts that a thread takes at once.
-constexpr int adhesive_contacts_at_once = 256;
-
-}  // namespace
 
 OutlineAdhesion::OutlineAdhesion(const SoftGrains& grains, std::span<const PairAdhesion> named)
-    : kinds_(grains.kinds()), between_(static_cast<std::size_t>(kinds_) * kinds_), at_walls_(kinds_) {
+    : law_(grains.kinds(), {}, {}) {
   for (const auto& [kind, other, law] : named) {
     require(law.surface_energy >= 0 && std::isfinite(law.surface_energy),
             "the surface energy must be >= 0 J/m^2, got {}", law.surface_energy);
-    require(kind >= 0 && kind < kinds_ && other >= PairAdhesion::wall && other < kinds_,
-            "adhesion of kinds {} and {}, but there are {}", kind, other, kinds_);
+    law_.set(kind, other, law, "adhesion");
     if (!law.any()) continue;
     require(law.range > 0 && std::isfinite(law.range), "the range of adhesion must be > 0 m, got {}",
             law.range);
     range_ = std::max(range_, law.range);
-    if (other == PairAdhesion::wall)
-      at_walls_[kind] = law;
-    else
-      between_[kind * kinds_ + other] = between_[other * kinds_ + kind] = law;
   }
   if (!any()) return;
   for (int g = 0; g < grains.size(); ++g) {
@@ -41,16 +30,6 @@ OutlineAdhesion::OutlineAdhesion(const SoftGrains& grains, std::span<const PairA
   }
 }
 
-bool OutlineAdhesion::adhere(int kind, int other) const {
-  return (other == PairAdhesion::wall ? at_walls_[kind] : between_[kind * kinds_ + other]).any();
-}
-
-const Adhesion& OutlineAdhesion::law_of(const SoftGrains& grains, const OutlineContact& contact) const {
-  const int kind = grains.kind(grains.grain_of_vertex(contact.vertex));
-  if (contact.wall >= 0) return at_walls_[kind];
-  return between_[kind * kinds_ + grains.kind(grains.grain_of_vertex(contact.master[0]))];
-}
-
 AdhesiveContacts OutlineAdhesion::contacts(const SoftGrains& grains, std::span<const OutlineContact> contacts,
                                            const OutlineState& state, bool at_end,
                                            std::span<double> attraction) const {
@@ -58,12 +37,10 @@ AdhesiveContacts OutlineAdhesion::contacts(const SoftGrains& grains, std::span<c
   if (!any()) return adhesive;
   adhesive.attraction = attraction;
   adhesive.contact.resize(contacts.size());
-  const int count = static_cast<int>(contacts.size());
-  parallel_for((count + adhesive_contacts_at_once - 1) / adhesive_contacts_at_once, [&](int part) {
-    const int begin = part * adhesive_contacts_at_once;
-    for (int c = begin; c < std::min(count, begin + adhesive_contacts_at_once); ++c) {
+  parallel_ranges(static_cast<int>(contacts.size()), [&](int begin, int end) {
+    for (int c = begin; c < end; ++c) {
       const OutlineContact& contact = contacts[c];
-      const Adhesion& law = law_of(grains, contact);
+      const Adhesion& law = law_.of(grains, contact);
       if (!law.any()) continue;
       adhesive.contact[c] = {.law = law,
                              .pull = length_of(contact) * state.dt,

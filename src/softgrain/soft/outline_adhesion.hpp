@@ -3,14 +3,14 @@
 #include <vector>
 
 #include "softgrain/contact/adhesive_contacts.hpp"
+#include "softgrain/soft/by_kinds.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
-#include "softgrain/soft/soft_grains.hpp"
 
 namespace softgrain {
 
 /// Adhesion of the grains of two kinds, or of a kind and walls.
 struct PairAdhesion {
-  static constexpr int wall = -1;
+  static constexpr int wall = ByKinds<Adhesion>::wall;
   int kind = 0;
   int other = wall;  ///< another kind, the same, or `wall`
   Adhesion law{};
@@ -28,7 +28,7 @@ class OutlineAdhesion {
   bool any() const { return range_ > 0; }
   double range() const { return range_; }  ///< the longest [m]
   /// Does a kind adhere to another, or to walls (PairAdhesion::wall)?
-  bool adhere(int kind, int other) const;
+  bool adhere(int kind, int other) const { return law_.of(kind, other).any(); }
   /// For the contact solver, in a step of state.dt; at_end: see AdhesiveContact. attraction: (contacts), kept
   /// by reference. Without adhesion none.
   AdhesiveContacts contacts(const SoftGrains& grains, std::span<const OutlineContact> contacts,
@@ -38,21 +38,19 @@ class OutlineAdhesion {
   double energy(const SoftGrains& grains, std::span<const OutlineContact> contacts, const Gap& gap) const {
     double sum = 0;
     for (const OutlineContact& contact : contacts) {
-      const Adhesion& law = law_of(grains, contact);
+      const Adhesion& law = law_.of(grains, contact);
       if (law.any()) sum += length_of(contact) * law.energy(gap(contact));
     }
     return sum;
   }
 
  private:
-  const Adhesion& law_of(const SoftGrains& grains, const OutlineContact& contact) const;
   double length_of(const OutlineContact& contact) const {
     return (contact.wall >= 0 ? 1 : 0.5) * length_[contact.vertex];
   }
 
-  int kinds_ = 0;
   double range_ = 0;
-  std::vector<Adhesion> between_, at_walls_;
+  ByKinds<Adhesion> law_;
   std::vector<double> length_;  // (outline vertices) [m]
 };
 

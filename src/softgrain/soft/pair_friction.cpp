@@ -6,30 +6,19 @@ namespace softgrain {
 
 FrictionByKind::FrictionByKind(int kinds, double between_grains, double at_walls,
                                std::span<const PairFriction> named)
-    : kinds_(kinds),
-      between_(static_cast<std::size_t>(kinds) * kinds, between_grains),
-      at_walls_(kinds, at_walls) {
+    : mu_(kinds, between_grains, at_walls) {
   require(between_grains >= 0 && at_walls >= 0, "friction must be >= 0, got {} and {}", between_grains,
           at_walls);
   for (const auto& [kind, other, mu] : named) {
     require(mu >= 0, "friction must be >= 0, got {}", mu);
-    require(kind >= 0 && kind < kinds && other >= PairFriction::wall && other < kinds,
-            "friction of kinds {} and {}, but there are {}", kind, other, kinds);
-    if (other == PairFriction::wall)
-      at_walls_[kind] = mu;
-    else
-      between_[kind * kinds + other] = between_[other * kinds + kind] = mu;
+    mu_.set(kind, other, mu, "friction");
   }
 }
 
 template <int Dim>
 std::vector<double> FrictionByKind::of(const GrainsOf<Dim>& grains, Contacts<Dim> contacts) const {
   std::vector<double> friction;
-  for (const auto& c : contacts) {
-    const int kind = grains.kind(grains.grain_of_vertex(c.vertex));
-    friction.push_back(c.wall >= 0 ? at_walls(kind)
-                                   : between(kind, grains.kind(grains.grain_of_vertex(c.master[0]))));
-  }
+  for (const auto& contact : contacts) friction.push_back(mu_.of(grains, contact));
   return friction;
 }
 
