@@ -30,7 +30,7 @@ enum class LoadingPath {
   stages,      ///< grains in a box, along stages of one's own
 };
 enum class GrainModel { bpm, mpm, rigid };         ///< bonded rigid primaries, an elastic body, a rigid one
-enum class GrainShape { disk, ellipse, polygon };  ///< of rigid grains
+enum class RigidShape { disk, ellipse, polygon };  ///< of rigid grains
 enum class EqualPrimaries { count, size };         ///< what the grains of a packing share
 enum class Integrator {
   backward_euler,    ///< implicit
@@ -55,7 +55,7 @@ struct Case {
   struct Grain {
     double radius = 5e-3;                 ///< R [m]
     double density = 990;                 ///< rho [kg/m^3]: the grain weighs rho pi R^2
-    GrainShape shape = GrainShape::disk;  ///< of a rigid grain; others lie in the circle of its diameter
+    RigidShape shape = RigidShape::disk;  ///< of a rigid grain; others lie in the circle of its diameter
     double aspect = 2;                    ///< of an ellipse, long over short axis
     int sides = 5;                        ///< of a regular polygon
   } grain;

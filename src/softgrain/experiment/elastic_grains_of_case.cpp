@@ -39,9 +39,9 @@ SoftGrains grains_of(const Case& c, std::vector<GrainPlacement> placed) {
 Topology rigid_shape_of(const Case& c) {
   const int vertices = 4 * c.mpm.cells;
   switch (c.grain.shape) {
-    case GrainShape::ellipse:
+    case RigidShape::ellipse:
       return rigid_ellipse(c.grain.aspect, vertices);
-    case GrainShape::polygon:
+    case RigidShape::polygon:
       return rigid_polygon(c.grain.sides, vertices);
     default:
       return rigid_disk(vertices);

@@ -51,9 +51,9 @@ double grain_area(const Case& c) {
 /// Of a grain over that of the circle of its diameter.
 double area_share(const Case& kind) {
   if (!is_rigid(kind)) return 1;
-  if (kind.grain.shape == GrainShape::ellipse) return 1 / kind.grain.aspect;
+  if (kind.grain.shape == RigidShape::ellipse) return 1 / kind.grain.aspect;
   const double turn = 2 * std::numbers::pi / kind.grain.sides;
-  return kind.grain.shape == GrainShape::polygon ? std::sin(turn) / turn : 1;
+  return kind.grain.shape == RigidShape::polygon ? std::sin(turn) / turn : 1;
 }
 
 /// Of the circles of the grains of a kind [m^2], about: placed ones know only how many they are.

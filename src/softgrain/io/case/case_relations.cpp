@@ -232,7 +232,7 @@ std::string rigid_grain_alone(const Case& c) {
 }
 
 std::string shape_cannot(const Case& c) {
-  if (is_rigid(c) || c.grain.shape == GrainShape::disk) return "";
+  if (is_rigid(c) || c.grain.shape == RigidShape::disk) return "";
   return fmt::format(
       "not yet: grains of shape \"{}\" that are not rigid come with a later version; today these are disks, "
       "or of the model \"rigid\"",

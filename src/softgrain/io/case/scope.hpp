@@ -29,9 +29,9 @@ inline constexpr Scope with_mpm{"on mpm", is_mpm};
 inline constexpr Scope with_outlines{"on mpm and rigid", is_outlined};
 inline constexpr Scope with_rigid{"on rigid", is_rigid};
 inline constexpr Scope ellipses{
-    "on rigid ellipses", [](const Case& c) { return is_rigid(c) && c.grain.shape == GrainShape::ellipse; }};
+    "on rigid ellipses", [](const Case& c) { return is_rigid(c) && c.grain.shape == RigidShape::ellipse; }};
 inline constexpr Scope polygons{
-    "on rigid polygons", [](const Case& c) { return is_rigid(c) && c.grain.shape == GrainShape::polygon; }};
+    "on rigid polygons", [](const Case& c) { return is_rigid(c) && c.grain.shape == RigidShape::polygon; }};
 inline constexpr Scope in_a_box{"in a box", is_in_a_box};
 inline constexpr Scope between_walls{"between walls", [](const Case& c) { return !is_in_a_box(c); }};
 inline constexpr Scope bpm_in_a_box{"on bpm in a box",

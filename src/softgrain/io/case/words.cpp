@@ -29,9 +29,9 @@ std::span<const Word<GrainModel>> words_of() {
 }
 
 template <>
-std::span<const Word<GrainShape>> words_of() {
-  static constexpr std::array words{Word{GrainShape::disk, "disk"}, Word{GrainShape::ellipse, "ellipse"},
-                                    Word{GrainShape::polygon, "polygon"}};
+std::span<const Word<RigidShape>> words_of() {
+  static constexpr std::array words{Word{RigidShape::disk, "disk"}, Word{RigidShape::ellipse, "ellipse"},
+                                    Word{RigidShape::polygon, "polygon"}};
   return words;
 }
 

@@ -55,24 +55,26 @@ std::string another_value(const Case& the_case, const Key& key) {
 
 }  // namespace
 
-TEST_CASE("a key that is said to have no effect changes no bit of the motion") {
-  int silent = 0;
+TEST_CASE("keys that are said to have no effect change no bit of the motion") {
+  std::size_t silent = 0;
   for (const auto& [kind, text] : kinds()) {
+    INFO(kind);
     const Case the_case = parse_case(text, kind);
-    const std::vector<double> expected = rows(the_case);
+    std::vector<std::string> all;
     for (const Key& key : case_keys()) {
       if (key.acts.covers(the_case)) continue;
-      INFO(kind << ": " << key.name);
+      INFO(key.name);
       const std::string set = key.name + "=" + another_value(the_case, key);
       try {
         const CaseReading reading = parse_case_with_notes(text, kind, {set});
-        ++silent;
         CHECK(std::ranges::count(reading.without_effect, key.name) == 1);
-        CHECK(rows(reading.the_case) == expected);
+        all.push_back(set);
       } catch (const CaseFileError&) {
         // refused: that is no silence either
       }
     }
+    silent += all.size();
+    CHECK(rows(parse_case(text, kind, all)) == rows(the_case));  // together: one that acts shows among the others
   }
   CHECK(silent > 100);
 }

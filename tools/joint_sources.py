@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Which sources can be compiled as one: most of the time of a compiler goes into headers, anew for every source.
+
+    tools/joint_sources.py LINES SOURCE...    prints "NUMBER SOURCE" for each: sources of one number make one joint source
+
+A joint source has at most LINES lines. Sources with a name in common in their anonymous namespaces, or that make functions
+of one template, are not joined; nor is one whose hidden name stands in a header of tests/ that another includes.
+"""
+import re
+import sys
+from pathlib import Path
+
+TESTS = Path(__file__).resolve().parent.parent / "tests"
+HIDDEN = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.M | re.S)
+# a name that a line without indentation defines: type, alias, function, variable
+DEFINED = re.compile(r"^(?:struct|class|enum class|using|concept) (\w+)|^[\w:].*?[ &*>](\w+)(?:\(|\{| = |;|\[)", re.M)
+# the last name before < in an explicit instantiation: template double RigidDynamics<2>::friction_work() const;
+INSTANTIATED = re.compile(r"^template (?!<)[^(;]*?(\w+)<[^<>]*>[^<(;]*[(;]", re.M)
+TAKEN_IN = re.compile(r"^using [\w:]*::(\w+);", re.M)
+INCLUDED = re.compile(r'^#include "([\w/]+\.hpp)"', re.M)
+
+
+def defined(text):
+    constants = {name for line in re.findall(r"^(?:inline )?const\w* .*", text, re.M) for name in re.findall(r"(\w+) = ", line)}
+    return constants | {name for names in DEFINED.findall(text) for name in names if name}
+
+
+def own_names(text):
+    """Names that a source hides or takes in, and the functions that it makes of templates."""
+    hidden = {name for block in HIDDEN.findall(text) for name in defined(block)}
+    return hidden | set(TAKEN_IN.findall(text)) | set(INSTANTIATED.findall(text))
+
+
+def shared_names(source, text):
+    """Names of the headers in tests/ that a source includes, in any depth."""
+    names = set()
+    for header in INCLUDED.findall(text):
+        for path in (TESTS / header, source.parent / header):
+            if path.is_file() and path.is_relative_to(TESTS):
+                inner = path.read_text()
+                names |= defined(inner) | shared_names(path, inner)
+                break
+    return names
+
+
+class Joint:
+    def __init__(self):
+        self.sources, self.lines, self.own, self.shared = [], 0, set(), set()
+
+    def takes(self, lines, own, shared, longest):
+        apart = not (self.own & (own | shared)) and not (self.shared & own)
+        return apart and (not self.sources or self.lines + lines <= longest)
+
+
+def joints(sources, longest):
+    """Lists of sources that can be compiled as one."""
+    made = []
+    for source in sorted(sources):
+        text = Path(source).read_text()
+        lines, own, shared = text.count("\n"), own_names(text), shared_names(Path(source), text)
+        joint = next((joint for joint in made if joint.takes(lines, own, shared, longest)), None)
+        if joint is None:
+            made.append(joint := Joint())
+        joint.sources.append(source)
+        joint.lines += lines
+        joint.own |= own
+        joint.shared |= shared
+    return [joint.sources for joint in made]
+
+
+if __name__ == "__main__":
+    for number, joint in enumerate(joints(sys.argv[2:], int(sys.argv[1]))):
+        print("\n".join(f"{number} {source}" for source in joint))
