@@ -33,8 +33,9 @@ struct Scene {
   /// behind
   Arrays surface;
   std::vector<double>
-      wall_segments;         ///< in the plane x0 y0 x1 y1 for each wall, or edge of a periodic cell [m]
-  std::vector<double> cell;  ///< its lattice vectors, x0 y0 x1 y1, 0 for one that it has not [m]; or empty
+      wall_segments;  ///< in the plane x0 y0 x1 y1 for each wall, or edge of a periodic cell [m]
+  /// Its lattice vectors, x0 y0 x1 y1, in space three of three, 0 for one that it has not [m]; or empty
+  std::vector<double> cell;
 };
 
 /// Vectors where they lie in memory: component d of row i is begin[i * row + d * component].

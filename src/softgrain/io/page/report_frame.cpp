@@ -131,7 +131,7 @@ void add_grain_means(ReportFrame& frame) {
 /// Of chains across the edges of a periodic cell the page would draw a line through all of it.
 void leave_out_crossing(ReportFrame& frame, const Scene& scene, std::size_t movable,
                         std::vector<Chain>& chains) {
-  const PeriodicCell<2> cell = cell_of(scene);
+  const PeriodicCell<2> cell = cell_of<2>(scene);
   const bool of_grains = frame.contacts_of_grains;
   const FrameColumn x = of_grains ? frame.columns["grain.x"] : column_of(scene.particles.at("position"), 0),
                     y = of_grains ? frame.columns["grain.y"] : column_of(scene.particles.at("position"), 1);
