@@ -39,13 +39,23 @@ def moments(snapshot):
 def ellipsoids(snapshot):
     """Semi-axes (n, 3) [m], the longest first, and orientations (n, 4), quaternions x y z w.
 
-    Of an ellipsoid the second moment over its volume is a_k^2/5 along its axes; lengths are scaled so that 4/3 pi a b c
-    is the volume between the flat quads, some 3 % less than that inside the smooth surface."""
-    volume, _, tensor = moments(snapshot)
+    Of an ellipsoid the second moment over its volume is a_k^2/5 along its axes. 4/3 pi a b c is the volume between the flat
+    quads over the share of a sphere that quads with corners in the same directions fill."""
+    volume, centre, tensor = moments(snapshot)
+    volume = volume / _fullness(snapshot, centre)
     values, vectors = np.linalg.eigh(tensor)
     axes, vectors = np.sqrt(5 * values[:, ::-1]), vectors[:, :, ::-1].copy()
     vectors[:, :, 2] *= np.sign(np.linalg.det(vectors))[:, None]  # right-handed
     return axes * np.cbrt(3 * volume / (4 * np.pi * axes.prod(axis=1)))[:, None], quaternions(vectors)
+
+
+def _fullness(snapshot, centre):
+    """(n,): volume between quads whose corners are moved onto a sphere about the grain's centre, over that of the sphere."""
+    corners, grain = triangles(snapshot)
+    u = corners - centre[grain][:, None]
+    u /= np.linalg.norm(u, axis=2)[:, :, None]
+    volume = np.einsum("ti,ti->t", u[:, 0], np.cross(u[:, 1], u[:, 2])) / 6
+    return np.bincount(grain, volume, len(centre)) / (4 / 3 * np.pi)
 
 
 def quaternions(rotations):

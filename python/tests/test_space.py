@@ -106,9 +106,8 @@ class Files(InSpace):
             np.testing.assert_allclose(lattice, np.diag([1, 1, height]))
             np.testing.assert_allclose(np.array(row[1:4], float), (0.5, 0.5, height / 2))
             self.assertAlmostEqual(float(row[6]), 1e5 * step)
-            # a block's semi-axes are in the ratio of its edges; 4/3 pi a b c is its volume
-            axes = np.array(row[7:10], float)
-            np.testing.assert_allclose(axes, np.array([1, 1, height]) * np.cbrt(3 / (4 * np.pi)), rtol=1e-6)
+            axes = np.array(row[7:10], float)  # a block's semi-axes are in the ratio of its edges
+            np.testing.assert_allclose(axes / axes[0], [1, 1, height], rtol=1e-6)
 
     def test_a_dump_and_tables_have_three_coordinates(self):
         dump = self.export("lammps", "--frame=-1")
@@ -151,6 +150,15 @@ class Ellipsoids(unittest.TestCase):
         u = np.array([x, y, z])
         turned = np.array([(w * w - u @ u) * e + 2 * (u @ e) * u + 2 * w * np.cross(u, e) for e in np.eye(3)])
         np.testing.assert_allclose(abs(np.sum(turned * turn.T, axis=1)), 1, atol=1e-12)
+
+
+    def test_a_sphere_of_few_quads_has_its_own_radius(self):
+        with tempfile.TemporaryDirectory() as folder:
+            snapshot = softgrain.open(write_run_in_space(folder))[0]
+        snapshot.outlines["position"][:] -= 0.5  # the corners of a cube lie on a sphere of radius sqrt(3)/2
+        snapshot.particles["position"][:] = 0.1
+        axes, _ = solids.ellipsoids(snapshot)
+        np.testing.assert_allclose(axes[0], np.sqrt(3) / 2)
 
 
 if __name__ == "__main__":

@@ -29,8 +29,8 @@ struct Scene {
   Arrays contacts;
   Arrays outlines;  ///< position (v, 2) of the outlines' vertices, grain (v): a new grain, a new polygon
   /// In space positions have three columns, outlines are closed surfaces, and `surface` has their quads:
-  /// quad (q, 4) of vertices, counter-clockwise seen from outside, grain (q), pressure (q) [Pa] of the cell
-  /// behind
+  /// quad (q, 4) of vertices, counter-clockwise seen from outside, grain (q), and of the cell behind pressure
+  /// (q) [Pa], J (q) and Cauchy stress (q, 9) [Pa]; walls (w, 12), four corners of each face [m]
   Arrays surface;
   std::vector<double>
       wall_segments;  ///< in the plane x0 y0 x1 y1 for each wall, or edge of a periodic cell [m]

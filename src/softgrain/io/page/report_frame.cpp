@@ -41,7 +41,7 @@ FrameColumn scalar_of(const Array& array) {
 
 /// What a particle is, and not a field that it carries.
 bool is_field(std::string_view name) {
-  return name != "x" && name != "y" && name != "radius" && name != "grain";
+  return name != "x" && name != "y" && name != "z" && name != "radius" && name != "grain";
 }
 
 void add_fields(ReportFrame& frame, const Scene& scene) {
@@ -180,7 +180,7 @@ std::vector<ReportField> fields_of(const ReportFrame& frame) {
                                               {"J", "volume over that at rest", ""},
                                               {"stress", "largest shear stress", "Pa"},
                                               {"velocity", "speed", "m/s"}};
-  constexpr std::string_view prefix = "particle.";
+  const std::string_view prefix = frame.columns.contains("vertex.x") ? "vertex." : "particle.";
   std::vector<ReportField> fields;
   for (const ReportField& field : known)
     if (frame.columns.contains(std::string(prefix) + field.name)) fields.push_back(field);
