@@ -3,6 +3,7 @@ import { Buffer, Mesh, Program } from "../gl";
 import { ForceScale, forceScaleOf } from "../picture";
 import { Drawing, inkOf, Look } from "../drawing";
 import { Run } from "../run";
+import { quantile } from "../units";
 import { Camera, dot, minus, plus, Vec3 } from "./camera";
 import * as shaders from "./shaders";
 import { boxInSpace, chainsInSpace, Net, netOf, Surfaces, surfacesOf, vertexColours } from "./surfaces";
@@ -27,6 +28,8 @@ export class SpaceRenderer implements Drawing {
   private net!: Net;
   private surfaces!: Surfaces;
   private shown = -1;
+  /** Of a grain in the middle [m]. */
+  private radius = 1;
   private low: Vec3 = [0, 0, 0];
   private high: Vec3 = [1, 1, 1];
   private gl: WebGL2RenderingContext;
@@ -51,6 +54,7 @@ export class SpaceRenderer implements Drawing {
     this.net = netOf(run);
     [this.low, this.high] = boxInSpace(run, this.net);
     this.forceScale = forceScaleOf(run);
+    this.radius = Math.cbrt((0.75 * quantile(run.column("grain.volume", 0), 0.5)) / Math.PI);
     this.camera.lookAt(this.low, this.high);
     this.camera.reset();
     this.shown = -1;
@@ -179,6 +183,7 @@ export class SpaceRenderer implements Drawing {
     this.surface.set("light", ...this.light);
     this.surface.set("highlight", look.highlight);
     this.surface.set("glass", glass ? 1 : 0);
+    this.surface.set("before", this.cut.axis === "" ? 0 : 0.15 * this.radius);
     this.mesh.draw();
   }
 

@@ -37,10 +37,11 @@ void main() {
 `;
 
 // glass: 0 for what is solid, else the surfaces are seen through, best where they are seen flat on. The back of a
-// surface is seen where it is cut: it stands for the cut, in the plain colour.
+// surface is seen where it is cut: it stands for the cut, in the plain colour, and so much nearer (before, in metres) that
+// a neighbour whose flat quads reach into it stays hidden.
 export const SURFACE_FRAGMENT = `${CUT}
 uniform vec3 towards, light;
-uniform float highlight, glass;
+uniform float highlight, glass, depth, before;
 in vec3 place;
 in vec3 away;
 in vec3 paint;
@@ -54,6 +55,7 @@ void main() {
   float rim = 1.0 - abs(dot(n, towards));
   float cover = glass > 0.0 ? 0.04 + 0.3 * rim * rim * rim : 1.0;
   colour = vec4(rgb * shade, 1) * cover;
+  gl_FragDepth = gl_FragCoord.z - (gl_FrontFacing ? 0.0 : 0.5 * depth * before);
 }
 `;
 
