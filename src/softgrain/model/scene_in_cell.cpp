@@ -42,7 +42,7 @@ PeriodicCell<Dim> cell_of(const Scene& scene) {
   if (scene.cell.size() != Dim * Dim) return cell;
   for (int k = 0; k < Dim; ++k) {
     const std::span vector(&scene.cell[static_cast<std::size_t>(Dim * k)], Dim);
-    if (std::ranges::all_of(vector, [](double x) { return x == 0; })) continue;
+    if (std::all_of(vector.begin(), vector.end(), [](double x) { return x == 0; })) continue;
     cell.repeats[static_cast<std::size_t>(k)] = true;
     for (int d = 0; d < Dim; ++d) cell.edges(d, k) = vector[static_cast<std::size_t>(d)];
   }

@@ -43,16 +43,20 @@ double picture_size(const ReportFrame& frame) {
   return size;
 }
 
-constexpr std::size_t few = 1 << 18;  ///< numbers that cost little
+constexpr std::size_t few = 1 << 18;        ///< numbers that cost little
+constexpr std::size_t very_many = 2000000;  ///< of vertices in space
 
 /// How far apart numbers may lie that the page need not tell apart, where there are many: outlines 1/8192 of
-/// the picture, particles 1/4096, their fields 1/32 of the range; the widths of lines 1/255; vertices of a
-/// surface 1/400 of a grain.
+/// the picture, particles 1/4096, their fields 1/32 of the range; the widths of lines 1/255. In space
+/// vertices 1/400 of a grain, of very many 1/200 and their fields 1/20; what deforms a grain as a whole 1e-4.
 double resolution(const std::string& name, const FrameColumn& values, double picture) {
   if (name == "contact.force") return extent(values) / 255;
+  if (name.starts_with("grain.a") && name.size() == std::string_view("grain.a00").size()) return 1e-4;
   if (values.size() <= few) return 0;
-  if (!is_geometry(name)) return extent(values) / 31;
-  return picture / (name.starts_with("particle.") ? 4096 : name.starts_with("vertex.") ? 400 : 8192);
+  const bool of_surface = name.starts_with("vertex."), all = of_surface && values.size() > very_many;
+  if (!is_geometry(name)) return extent(values) / (all ? 19 : 31);
+  if (of_surface) return picture / (all ? 200 : 400);
+  return picture / (name.starts_with("particle.") ? 4096 : 8192);
 }
 
 /// The middle 99 % keep their values, the rest takes the nearest of these: few levels must do.
