@@ -75,8 +75,10 @@ class Page(BrowserTest):
         if PICTURES:
             PICTURES.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, PICTURES / f"space-{path.name}")
-        x, y, width, height = (round(self.browser.run(f"{STAGE}.{side}")) for side in ("x", "y", "width", "height"))
-        return 255 * imread(path)[y:y + height, x:x + width, :3]
+        picture = 255 * imread(path)[:, :, :3]
+        scale = picture.shape[1] / self.browser.run("innerWidth")  # a phone has two pixels for one of CSS
+        x, y, width, height = (round(scale * self.browser.run(f"{STAGE}.{side}")) for side in ("x", "y", "width", "height"))
+        return picture[y:y + height, x:x + width]
 
     def choose(self, selector, value):
         self.browser.run(f"(s => {{ s.value = '{value}'; s.dispatchEvent(new Event('change')); s.dispatchEvent(new Event('input')); }})"
@@ -100,6 +102,7 @@ class Page(BrowserTest):
     def test_grains_cover_what_their_vertices_cover_in_the_first_view(self):
         """Where the page paints, against a projection of the snapshot that is made here."""
         self.open()
+        self.choose(".colouring", "grain")  # no greys
         picture = self.pixels("whole")
         self.assertEqual(self.browser.errors, [])
         painted = np.ptp(picture, axis=2) > 25
