@@ -48,16 +48,16 @@ class Snapshot:
         return f"<Snapshot of step {self.step}, {self.time:.6g} s; {'; '.join([*parts, f'walls: {len(self.walls)}'])}>"
 
     def contact_table(self) -> dict[str, np.ndarray]:
-        """Columns a, b, wall, grain_a, grain_b, normal_x, normal_y, x, y [m], normal_force, tangential_force [N/m]:
+        """Columns a, b, wall, grain_a, grain_b, normal_x, normal_y, x, y [m], normal_force, tangential_force [N/m], in space [N]:
         `pandas.DataFrame(snapshot.contact_table())`; what they mean: softgrain.export.contacts."""
         from .export.contacts import contact_table
 
         return contact_table(self)
 
     def images(self) -> np.ndarray:
-        """(m, 2) [m]: from what is shown to its next images across the edges of a periodic cell, the first of all itself."""
+        """(m, 2) or (m, 3) [m]: from what is shown to its next images across the edges of a periodic cell, the first of all itself."""
         steps = [(0, 1, -1) if np.any(vector) else (0,) for vector in self.cell]
-        return np.array([np.array(n) @ self.cell for n in itertools.product(*steps)]) if steps else np.zeros((1, 2))
+        return np.array([np.array(n) @ self.cell for n in itertools.product(*steps)]) if steps else np.zeros_like(self.particles["position"][:1])
 
     def bodies(self) -> np.ndarray:
         """Where what `contacts["pair"]` counts lies, walls left out (n, 2) [m]: particles, or the centres of elastic grains."""

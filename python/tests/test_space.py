@@ -1,23 +1,26 @@
-"""Runs in three dimensions: their figure, and what the other verbs say of them."""
+"""Runs in three dimensions: their figure, their film, and what other programs get of them."""
 
+import contextlib
 import io
+import re
 import tempfile
 import unittest
-from contextlib import redirect_stderr
 from pathlib import Path
 
 import h5py
 import numpy as np
 
 import softgrain
-from softgrain import plot
+from softgrain import plot, solids
+from softgrain.export.__main__ import main as export
+from softgrain.movie import film_of
 from softgrain.movie.__main__ import main as movie
 
 COLUMNS = "time[s],strain,stress_bottom[Pa],stress_top[Pa]\n"
 
 
 def write_run_in_space(folder):
-    """A cube in a box of six walls, which is pressed flat from one snapshot to the next."""
+    """A cube in a box of six walls, which is pressed flat from one snapshot to the next; it pushes on the floor."""
     folder = Path(folder)
     (folder / "case.toml").write_text('[experiment]\nmodel = "mpm"\nloading = "isotropic"\ndimension = 3\n')
     (folder / "series.csv").write_text(COLUMNS + "0,0,0,0\n1,0.1,1e5,1e5\n2,0.2,2e5,2e5\n")
@@ -28,20 +31,25 @@ def write_run_in_space(folder):
         position = corner * (1, 1, 1 - 0.1 * step)
         with h5py.File(folder / "snap" / f"s{step:06d}.h5", "w") as file:
             file.attrs["step"], file.attrs["time"] = step, float(step)
-            file["scene/particles/position"] = position.mean(0)[None]
-            file["scene/outlines/position"] = position
-            file["scene/surface/quad"] = quad
-            file["scene/surface/pressure"] = np.full((6, 1), 1e5 * step)
-            file["scene/surface/walls"] = position[quad].reshape(6, 12)
+            scene = {"particles/position": position.mean(0)[None], "particles/radius": [0.5], "particles/grain": [0],
+                     "outlines/position": position, "outlines/grain": np.zeros(8, int),
+                     "surface/quad": quad, "surface/grain": np.zeros((6, 1), int),
+                     "surface/pressure": np.full((6, 1), 1e5 * step), "surface/walls": position[quad].reshape(6, 12),
+                     "contacts/pair": [[0, 1]], "contacts/force": [[2.0]], "contacts/total_force": [[0.6, 0.8, -2.0]],
+                     "contacts/normal": [[0.0, 0, -1]], "contacts/position": [[0.5, 0.5, 0]]}
+            for name, values in scene.items():
+                file[f"scene/{name}"] = values
     return folder
 
 
-class Space(unittest.TestCase):
+class InSpace(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.run_in_space = softgrain.open(write_run_in_space(folder.name))
 
+
+class Pictures(InSpace):
     def test_a_panel_shows_the_faces_that_look_at_us_the_farthest_first(self):
         with plot.style():
             figure = plot.draw_space(self.run_in_space)
@@ -56,11 +64,101 @@ class Space(unittest.TestCase):
         self.assertTrue(self.run_in_space.in_space)
         self.assertEqual(len(self.run_in_space.plot.grain().axes), 4)  # three panels and the key
 
-    def test_verbs_that_know_the_plane_alone_say_so(self):
-        words = io.StringIO()
-        with redirect_stderr(words):
-            self.assertEqual(movie([str(self.run_in_space.path), "-o", str(self.run_in_space.path / "film.gif")]), 2)
-        self.assertIn("not yet", words.getvalue())
+    def test_a_film_has_a_frame_for_each_snapshot_at_one_scale_and_marks_the_curve(self):
+        with plot.style():
+            film = film_of(self.run_in_space, 480)
+            frames = list(film)
+        self.assertEqual({frame.shape for frame in frames}, {(270, 480, 3)})
+        heights = []
+        for frame in frames:  # the cube is seen from slightly above: its top edge sinks by the strain
+            coloured = np.ptp(frame[:, 20:280].astype(int), axis=2).max(axis=1) > 15
+            heights.append(np.flatnonzero(coloured)[0])
+        sunk = 0.1 * np.cos(plot.space.ELEVATION) * film.panel.scale * 480 / 180  # pixels
+        np.testing.assert_allclose(np.diff(heights), sunk, atol=1.1)
+        (x,), (y,) = film.point.get_data()
+        self.assertEqual((x, y), (0.2, 0.2))
+
+    def test_the_verb_writes_a_film_and_leaves_drawings_as_svg_to_plot(self):
+        path, words = self.run_in_space.path / "film.gif", io.StringIO()
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(movie([str(self.run_in_space.path), "-o", str(path), "--width=160"]), 0)
+        self.assertEqual(path.read_bytes()[:3], b"GIF")
+        with contextlib.redirect_stderr(words):
+            self.assertEqual(export([str(self.run_in_space.path), "--to=svg"]), 2)
+        self.assertIn("softgrain plot", words.getvalue())
+
+
+class Files(InSpace):
+    def export(self, form, *words):
+        path = self.run_in_space.path / f"out.{form}"
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(export([str(self.run_in_space.path), f"--to={form}", "-o", str(path), *words]), 0)
+        return path.read_text().splitlines()
+
+    def test_extended_xyz_has_a_particle_a_grain_in_the_box_of_the_walls(self):
+        lines = self.export("xyz")
+        self.assertEqual(len(lines), 9)
+        for step in range(3):
+            comment, row = lines[3 * step + 1], lines[3 * step + 2].split()
+            self.assertIn("species:S:1:pos:R:3:radius:R:1:grain:I:1:pressure:R:1:aspherical_shape:R:3:orientation:R:4 ", comment)
+            height = 1 - 0.1 * step
+            lattice = np.array(re.search('Lattice="([^"]*)"', comment)[1].split(), float).reshape(3, 3)
+            np.testing.assert_allclose(lattice, np.diag([1, 1, height]))
+            np.testing.assert_allclose(np.array(row[1:4], float), (0.5, 0.5, height / 2))
+            self.assertAlmostEqual(float(row[6]), 1e5 * step)
+            axes = np.array(row[7:10], float)  # a block's semi-axes are in the ratio of its edges
+            np.testing.assert_allclose(axes / axes[0], [1, 1, height], rtol=1e-6)
+
+    def test_a_dump_and_tables_have_three_coordinates(self):
+        dump = self.export("lammps", "--frame=-1")
+        self.assertEqual(dump[4], "ITEM: BOX BOUNDS ff ff ff")
+        np.testing.assert_allclose([line.split() for line in dump[5:8]] and float(dump[7].split()[1]), 0.8)
+        self.assertEqual(self.export("csv")[0], "x[m],y[m],z[m],grain,radius[m]")
+        header, row = self.export("contacts")
+        table = dict(zip(header.split(","), map(float, row.split(","))))
+        self.assertEqual([table[name] for name in ("a", "b", "wall", "normal_z", "z[m]")], [0, -1, 0, -1, 0])
+        self.assertEqual([table[f"force_{axis}[N]"] for axis in "xyz"], [0.6, 0.8, -2])
+        self.assertAlmostEqual(table["tangential_force[N]"], 1)
+        self.assertEqual(table["normal_force[N]"], 2)
+
+    def test_a_cell_that_repeats_is_said_to(self):
+        for path in self.run_in_space.snapshots:
+            with h5py.File(path, "r+") as file:
+                file["scene/cell"] = np.diag([1.0, 1.0, 0.0])
+        self.assertIn('pbc="T T F"', self.export("xyz")[1])
+        self.assertEqual(self.export("lammps")[4], "ITEM: BOX BOUNDS pp pp ff")
+        self.assertEqual(self.run_in_space[0].images().shape, (9, 3))
+
+
+class Ellipsoids(unittest.TestCase):
+    def test_a_turned_block_has_its_axes_and_its_turn(self):
+        """Against the closed form: moments of a block a x b x c are a^2/12; a quaternion turns its axes back."""
+        with tempfile.TemporaryDirectory() as folder:
+            snapshot = softgrain.open(write_run_in_space(folder))[0]
+        axis, angle = np.array([1, 2, 2]) / 3, 0.7
+        K = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+        turn = np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
+        edges = np.array([3.0, 2.0, 1.0])
+        snapshot.outlines["position"][:] = (snapshot.outlines["position"] * edges + (5, -4, 3)) @ turn.T
+        volume, centre, tensor = solids.moments(snapshot)
+        self.assertAlmostEqual(volume[0], 6)
+        np.testing.assert_allclose(centre[0], turn @ (edges / 2 + (5, -4, 3)))
+        np.testing.assert_allclose(tensor[0], turn @ np.diag(edges**2 / 12) @ turn.T, atol=1e-12)
+        axes, quaternion = solids.ellipsoids(snapshot)
+        np.testing.assert_allclose(axes[0] / axes[0, 2], edges)
+        x, y, z, w = quaternion[0]
+        u = np.array([x, y, z])
+        turned = np.array([(w * w - u @ u) * e + 2 * (u @ e) * u + 2 * w * np.cross(u, e) for e in np.eye(3)])
+        np.testing.assert_allclose(abs(np.sum(turned * turn.T, axis=1)), 1, atol=1e-12)
+
+
+    def test_a_sphere_of_few_quads_has_its_own_radius(self):
+        with tempfile.TemporaryDirectory() as folder:
+            snapshot = softgrain.open(write_run_in_space(folder))[0]
+        snapshot.outlines["position"][:] -= 0.5  # the corners of a cube lie on a sphere of radius sqrt(3)/2
+        snapshot.particles["position"][:] = 0.1
+        axes, _ = solids.ellipsoids(snapshot)
+        np.testing.assert_allclose(axes[0], np.sqrt(3) / 2)
 
 
 if __name__ == "__main__":

@@ -11,6 +11,9 @@ export interface View {
   /** Whether colours run over powers of ten. */
   log: boolean;
   chains: boolean;
+  /** In space: from where one looks, and where the packing is cut. */
+  camera: string;
+  cut: string;
   /** Of each plot "x,y", or "x,y,log". */
   plots: string[];
 }
@@ -32,7 +35,8 @@ export function fromHash(hash: string, first: View): View {
     const value = Number(given.get(name) ?? first[name]);
     return Number.isInteger(value) && value >= 0 ? value : first[name];
   };
-  const word = (name: "colour" | "over" | "low" | "high") => given.get(name) ?? first[name];
+  const word = (name: "colour" | "over" | "low" | "high" | "camera" | "cut") =>
+    given.get(name) ?? first[name];
   const mark = (name: "log" | "chains") => (given.get(name) ?? textOf(first[name])) === "1";
   return {
     run: whole("run"),
@@ -43,6 +47,8 @@ export function fromHash(hash: string, first: View): View {
     high: word("high"),
     log: mark("log"),
     chains: mark("chains"),
+    camera: word("camera"),
+    cut: word("cut"),
     plots: given.get("plots")?.split(";") ?? first.plots,
   };
 }

@@ -8,7 +8,7 @@ export interface Colouring {
   label: string;
   /** SI; "%" where `percent`. */
   unit: string;
-  on: "grain" | "particle";
+  on: "grain" | "particle" | "vertex";
   map: MapName | "categories";
   low: number;
   high: number;
@@ -23,12 +23,13 @@ export type RangeOver = "run" | "picture" | "ends";
 const LOG_RANGE = 1000;
 
 export function colourOf(colouring: Colouring, value: number): Rgb {
-  const { map, low, high, log } = colouring;
-  if (map === "categories") return categoryColour(value);
-  return colourAt(
-    map,
-    log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low || 1),
-  );
+  const { map } = colouring;
+  return map === "categories" ? categoryColour(value) : colourAt(map, shareOf(colouring, value));
+}
+
+/** Where a value lies between the ends: 0 at the lower, 1 at the upper. */
+export function shareOf({ low, high, log }: Colouring, value: number): number {
+  return log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low || 1);
 }
 
 /** What stands in the middle of the scale. */
@@ -44,20 +45,25 @@ export function chainColour(colouring: Colouring | null): Rgb {
 export function colourings(run: Run): Colouring[] {
   const found: Colouring[] = [];
   for (const { name, label, unit } of run.header.fields) {
-    const values = (frame: number) => run.column(`particle.${name}`, frame);
-    if (run.has(`particle.${name}`))
-      found.push(withMap(run, { key: name, label, unit, on: "particle", values }));
+    const on = (["particle", "vertex", "grain"] as const).find((owner) => run.has(`${owner}.${name}`));
+    const values = (frame: number) => run.column(`${on}.${name}`, frame);
+    if (on) found.push(withMap(run, { key: name, label, unit, on, values }));
   }
-  if (run.has("grain.area"))
-    found.push(
-      withMap(run, {
-        key: "area",
-        label: "change of area",
-        unit: "%",
-        on: "grain",
-        values: (frame) => areaChange(run, frame),
-      }),
-    );
+  for (const size of ["area", "volume"] as const)
+    if (run.has(`grain.${size}`))
+      found.push(
+        withMap(run, {
+          key: size,
+          label: `change of ${size}`,
+          unit: "%",
+          on: "grain",
+          values: (frame) => sizeChange(run, size, frame),
+        }),
+      );
+  if (run.has("grain.kind")) {
+    const values = (frame: number) => run.column("grain.kind", frame);
+    found.push(withMap(run, { key: "kind", label: "kind", unit: "", on: "grain", values }));
+  }
   if (run.grains > 1) {
     if (!run.has("particle.coordination"))
       found.push(
@@ -76,10 +82,10 @@ export function colourings(run: Run): Colouring[] {
   return found;
 }
 
-/** Change of each grain's area since the start [%]. */
-export function areaChange(run: Run, frame: number): Float32Array {
-  const start = run.column("grain.area", 0);
-  return run.column("grain.area", frame).map((area, g) => 100 * (area / start[g] - 1));
+/** Change of each grain's area, or volume, since the start [%]. */
+export function sizeChange(run: Run, size: "area" | "volume", frame: number): Float32Array {
+  const start = run.column(`grain.${size}`, 0);
+  return run.column(`grain.${size}`, frame).map((now, g) => 100 * (now / start[g] - 1));
 }
 
 /** Number of other grains, and walls, that push each grain. */

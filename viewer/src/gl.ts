@@ -28,6 +28,7 @@ export class Program {
     if (!this.uniforms.has(name)) this.uniforms.set(name, this.gl.getUniformLocation(this.handle, name));
     const place = this.uniforms.get(name)!;
     if (values.length === 1) this.gl.uniform1f(place, values[0]);
+    else if (values.length === 3) this.gl.uniform3f(place, values[0], values[1], values[2]);
     else this.gl.uniform2f(place, values[0], values[1]);
   }
 }
@@ -68,6 +69,53 @@ export class Buffer {
 
   bind(): void {
     this.gl.bindVertexArray(this.array);
+  }
+}
+
+/** Triangles by their corners; attribute k has a buffer of its own, with sizes[k] floats per vertex. */
+export class Mesh {
+  private array: WebGLVertexArrayObject;
+  private data: WebGLBuffer[];
+  private corners: WebGLBuffer;
+  private count = 0;
+
+  constructor(
+    private gl: WebGL2RenderingContext,
+    sizes: number[],
+  ) {
+    this.array = gl.createVertexArray()!;
+    this.corners = gl.createBuffer()!;
+    gl.bindVertexArray(this.array);
+    this.data = sizes.map((size, location) => {
+      const buffer = gl.createBuffer()!;
+      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+      gl.enableVertexAttribArray(location);
+      gl.vertexAttribPointer(location, size, gl.FLOAT, false, 0, 0);
+      return buffer;
+    });
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
+    gl.bindVertexArray(null);
+  }
+
+  /** Three vertices of each triangle. */
+  index(corners: Uint32Array): void {
+    const { gl } = this;
+    gl.bindVertexArray(this.array);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, corners, gl.STATIC_DRAW);
+    gl.bindVertexArray(null);
+    this.count = corners.length;
+  }
+
+  fill(attribute: number, values: Float32Array): void {
+    const { gl } = this;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.data[attribute]);
+    gl.bufferData(gl.ARRAY_BUFFER, values, gl.DYNAMIC_DRAW);
+  }
+
+  draw(): void {
+    const { gl } = this;
+    gl.bindVertexArray(this.array);
+    gl.drawElements(gl.TRIANGLES, this.count, gl.UNSIGNED_INT, 0);
   }
 }
 

@@ -56,6 +56,7 @@ export function showForceKey(
   scale: ForceScale | null,
   pixelsPerMetre: number,
   colour: Rgb,
+  unit: string,
 ): void {
   parent.replaceChildren();
   if (!scale) return;
@@ -63,7 +64,7 @@ export function showForceKey(
   const line = document.createElement("i");
   line.style.background = css(colour);
   line.style.height = `${Math.max(1, (scale.width * pixelsPerMetre * force) / scale.force)}px`;
-  parent.append(line, text(`contact force ${withUnit(force, "N/m")}`));
+  parent.append(line, text(`contact force ${withUnit(force, unit)}`));
 }
 
 function text(words: string): HTMLElement {

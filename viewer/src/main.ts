@@ -10,10 +10,14 @@ import { Player } from "./player";
 import { Plots } from "./plots";
 import { Pointer } from "./pointer";
 import { showProvenance } from "./provenance";
+import { Drawing } from "./drawing";
 import { Renderer } from "./renderer";
 import { Run } from "./run";
 import { Picture, savePicture } from "./save";
 import { valueAt } from "./series";
+import { SpaceControls } from "./space/controls";
+import { Orbit } from "./space/orbit";
+import { SpaceRenderer } from "./space/renderer";
 import { mostCompressed, summary } from "./summary";
 import { toggleTheme } from "./theme";
 import { short, withUnit } from "./units";
@@ -38,7 +42,8 @@ class Page {
   /** Ends of the colours that were typed [SI]. */
   private ends: { low?: number; high?: number } = {};
   private choices: Colouring[] = [];
-  private renderer: Renderer | null = null;
+  private drawings: { plane: Renderer; space: SpaceRenderer } | null = null;
+  private space: SpaceControls | null = null;
   private plots: Plots;
   private player = new Player(play, this);
   private drawPending = false;
@@ -48,7 +53,9 @@ class Page {
 
   constructor(private runs: Run[]) {
     try {
-      this.renderer = new Renderer($<HTMLCanvasElement>("canvas"));
+      const canvas = $<HTMLCanvasElement>("canvas");
+      this.drawings = { plane: new Renderer(canvas), space: new SpaceRenderer(canvas) };
+      this.space = new SpaceControls($(".space"), this.drawings.space, () => this.draw());
     } catch (error) {
       say(`The packing cannot be drawn here (${(error as Error).message}); the curves and numbers can.`);
     }
@@ -58,6 +65,7 @@ class Page {
     this.plots = new Plots($(".plots"), runs, (frame) => this.seek(frame), changed);
     showProvenance($("footer"), runs);
     this.listen();
+    chains.checked = !this.run.inSpace; // there they lie behind the surfaces
     this.showRun(0);
     this.seek(mostCompressed(this.run));
     this.opening = this.view;
@@ -75,6 +83,8 @@ class Page {
       high: text(this.ends.high),
       log: log.checked,
       chains: chains.checked,
+      camera: this.run.inSpace ? (this.space?.camera ?? "") : "",
+      cut: this.space?.cut ?? "",
       plots: this.plots.choices,
     };
   }
@@ -85,6 +95,7 @@ class Page {
     if ([...over.options].some(({ value }) => value === view.over)) over.value = view.over;
     [log.checked, chains.checked] = [view.log, view.chains];
     this.plots.choices = view.plots;
+    if (this.space) [this.space.camera, this.space.cut] = [view.camera, view.cut];
     const end = (text: string) => (text !== "" && Number.isFinite(Number(text)) ? Number(text) : undefined);
     this.setEnds({ low: end(view.low), high: end(view.high) });
     this.seek(view.frame);
@@ -104,6 +115,9 @@ class Page {
   }
   private get run(): Run {
     return this.runs[this.shown];
+  }
+  private get renderer(): Drawing | null {
+    return this.drawings && (this.run.inSpace ? this.drawings.space : this.drawings.plane);
   }
 
   private listen(): void {
@@ -125,17 +139,29 @@ class Page {
         play: () => this.player.toggle(),
       }),
     );
-    if (!this.renderer) return;
+    if (!this.drawings) return;
     new ResizeObserver(() => this.draw()).observe($(".stage"));
+    const [canvas, tip] = [$<HTMLCanvasElement>("canvas"), $(".tip")];
+    const highlight = (grain: number) => {
+      this.highlight = grain;
+      this.draw();
+    };
+    const { plane, space } = this.drawings;
     new Pointer(
-      $<HTMLCanvasElement>("canvas"),
-      $(".tip"),
-      this.renderer,
+      canvas,
+      tip,
+      plane,
       () => this.frame,
-      (grain) => {
-        this.highlight = grain;
-        this.draw();
-      },
+      highlight,
+      () => !this.run.inSpace,
+    );
+    new Orbit(
+      canvas,
+      tip,
+      space,
+      () => this.frame,
+      highlight,
+      () => this.run.inSpace,
     );
   }
 
@@ -168,6 +194,8 @@ class Page {
       "--aspect",
       String(Math.min(1.6, Math.max(0.75, this.renderer?.aspect ?? 1))),
     );
+    if (this.space) this.space.hidden = !this.run.inSpace;
+    $(".stage").classList.toggle("in-space", this.run.inSpace);
     $(".chains").hidden = !this.renderer?.forceScale;
     $(".save").hidden = !this.renderer;
     film.hidden = !this.renderer || !canFilm() || this.run.frames < 2;
@@ -224,7 +252,8 @@ class Page {
     $(".over").hidden = $(".log").hidden = !colouring || colouring.map === "categories";
     showLegend($(".legend"), colouring, (end, value) => this.setEnds({ ...this.ends, [end]: value }));
     const forceScale = chains.checked ? this.renderer.forceScale : null;
-    showForceKey($(".force"), forceScale, this.renderer.pixelsPerMetre, chainColour(colouring));
+    const unit = this.run.inSpace ? "N" : "N/m";
+    showForceKey($(".force"), forceScale, this.renderer.pixelsPerMetre, chainColour(colouring), unit);
     $("canvas").setAttribute(
       "aria-label",
       `Packing of ${this.run.name}, ${this.now()}, coloured by ${colouring?.label ?? "nothing"}`,

@@ -1,4 +1,4 @@
-import { areaChange, contactsOfGrains } from "./colouring";
+import { contactsOfGrains, sizeChange } from "./colouring";
 import { Places } from "./picture";
 import { Run } from "./run";
 import { short, withUnit } from "./units";
@@ -24,6 +24,11 @@ export function pick(run: Run, p: Places, x: number, y: number): Picked | null {
   return null;
 }
 
+/** Of what was picked [m]. */
+export function centreOf(p: Places, { kind, index }: Picked): number[] {
+  return kind === "grain" ? [p.grainX[index], p.grainY[index]] : [p.x[index], p.y[index]];
+}
+
 /** Is the point inside the polygon? By the parity of crossings. */
 function isInside(p: Places, begin: number, end: number, x: number, y: number): boolean {
   let inside = false;
@@ -34,21 +39,29 @@ function isInside(p: Places, begin: number, end: number, x: number, y: number): 
   return inside;
 }
 
-/** Its numbers: pairs of a heading and what stands beside it. */
-export function describe(run: Run, p: Places, frame: number, { kind, index }: Picked): [string, string][] {
+/** Its numbers: pairs of a heading and what stands beside it; centre: of it [m]. */
+export function describe(
+  run: Run,
+  frame: number,
+  { kind, index }: Picked,
+  centre: number[],
+): [string, string][] {
   const of = (name: string) => run.column(`${kind}.${name}`, frame)[index];
   const lines: [string, string][] = [];
-  const [x, y] = kind === "grain" ? [p.grainX[index], p.grainY[index]] : [p.x[index], p.y[index]];
   for (const { name, label, unit } of run.header.fields)
     if (run.has(`${kind}.${name}`))
       lines.push([kind === "grain" ? `mean ${label}` : label, withUnit(of(name), unit)]);
-  if (kind === "grain" && run.has("grain.area")) {
-    lines.push(["area", `${short(1e6 * of("area"))} mm²`]);
-    lines.push(["change of area", `${short(areaChange(run, frame)[index])} %`]);
+  for (const [size, factor, unit] of [
+    ["area", 1e6, "mm²"],
+    ["volume", 1e9, "mm³"],
+  ] as const) {
+    if (kind !== "grain" || !run.has(`grain.${size}`)) continue;
+    lines.push([size, `${short(factor * of(size))} ${unit}`]);
+    lines.push([`change of ${size}`, `${short(sizeChange(run, size, frame)[index])} %`]);
   }
   if (kind === "grain" && run.grains > 1)
     lines.push(["contacts", String(contactsOfGrains(run, frame)[index])]);
-  if (kind === "particle") lines.push(["radius", withUnit(p.radius[index], "m")]);
-  lines.push(["centre", `${withUnit(x, "m")}, ${withUnit(y, "m")}`]);
+  if (kind === "particle") lines.push(["radius", withUnit(of("radius"), "m")]);
+  lines.push(["centre", centre.map((x) => withUnit(x, "m")).join(", ")]);
   return [[kind === "grain" ? `Grain ${index}` : `Primary ${index}`, ""], ...lines];
 }

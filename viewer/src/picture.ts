@@ -63,7 +63,7 @@ export function boxOf(run: Run): Box {
   return box.x0 < box.x1 ? box : { x0: 0, y0: 0, x1: 1, y1: 1 };
 }
 
-/** How wide force chains are: `width` [m] at `force` [N/m], in proportion. */
+/** How wide force chains are: `width` [m] at `force` [N/m, in space N], in proportion. */
 export interface ForceScale {
   force: number;
   width: number;
@@ -73,6 +73,10 @@ export function forceScaleOf(run: Run): ForceScale | null {
   const forces = run.sample(25).flatMap((frame) => [...run.contacts(frame).force]);
   // what two walls do to one grain is no chain
   if (forces.length === 0 || (run.header.contacts_of_grains && run.grains < 2)) return null;
+  if (run.inSpace) {
+    const volume = quantile(run.column("grain.volume", 0), 0.5);
+    return { force: quantile(forces, 0.99), width: 0.3 * Math.cbrt((0.75 * volume) / Math.PI) };
+  }
   const last = placesOf(run, 0);
   const area = run.hasOutlines ? quantile(run.column("grain.area", 0), 0.5) : 0;
   const radius = area > 0 ? Math.sqrt(area / Math.PI) : quantile(last.radius, 0.5);

@@ -1,5 +1,6 @@
-import { describe, pick } from "./pick";
+import { centreOf, describe, pick } from "./pick";
 import { Renderer } from "./renderer";
+import { hideTip, showTip } from "./tip";
 
 /**
  * The pointer over the packing: a grain's numbers, magnifying (double click, back with shift; two fingers) and
@@ -15,12 +16,13 @@ export class Pointer {
     private renderer: Renderer,
     private frame: () => number,
     private highlight: (grain: number) => void,
+    active: () => boolean,
   ) {
-    canvas.addEventListener("pointermove", (event) => this.onMove(event));
-    canvas.addEventListener("pointerdown", (event) => this.onMove(event));
-    canvas.addEventListener("pointerleave", () => this.leave());
-    canvas.addEventListener("dblclick", (event) => this.onDoubleClick(event));
-    canvas.addEventListener("touchmove", (event) => this.onTouch(event), { passive: false });
+    canvas.addEventListener("pointermove", (event) => active() && this.onMove(event));
+    canvas.addEventListener("pointerdown", (event) => active() && this.onMove(event));
+    canvas.addEventListener("pointerleave", () => active() && this.leave());
+    canvas.addEventListener("dblclick", (event) => active() && this.onDoubleClick(event));
+    canvas.addEventListener("touchmove", (event) => active() && this.onTouch(event), { passive: false });
     for (const kind of ["touchstart", "touchend", "touchcancel"] as const)
       canvas.addEventListener(kind, () => (this.pinch = undefined));
     document.addEventListener("keydown", () => this.leave());
@@ -54,23 +56,9 @@ export class Pointer {
     const [x, y] = renderer.toWorld(event.offsetX, event.offsetY);
     const picked = pick(renderer.run, renderer.places, x, y);
     this.highlight(picked?.kind === "grain" ? picked.index : -1);
-    this.tip.hidden = !picked;
-    if (!picked) return;
-    this.tip.replaceChildren(
-      ...describe(renderer.run, renderer.places, this.frame(), picked).map(([heading, words]) => {
-        const line = document.createElement("div");
-        line.append(
-          Object.assign(document.createElement("span"), { textContent: heading }),
-          Object.assign(document.createElement("b"), { textContent: words }),
-        );
-        return line;
-      }),
-    );
-    const [width, height] = [this.tip.offsetWidth, this.tip.offsetHeight];
-    const left =
-      event.offsetX + 16 + width < this.canvas.clientWidth ? event.offsetX + 16 : event.offsetX - 16 - width;
-    const top = Math.min(event.offsetY + 12, this.canvas.clientHeight - height);
-    this.tip.style.transform = `translate(${Math.max(0, left)}px, ${Math.max(0, top)}px)`;
+    if (!picked) return hideTip(this.tip);
+    const centre = centreOf(renderer.places, picked);
+    showTip(this.tip, this.canvas, event, describe(renderer.run, this.frame(), picked, centre));
   }
 
   private leave(): void {

@@ -1,4 +1,5 @@
 import { chainColour, Colouring } from "./colouring";
+import { Drawing, inkOf, Look } from "./drawing";
 import { Buffer, Offscreen, Program } from "./gl";
 import {
   Box,
@@ -14,15 +15,8 @@ import {
 import { Run } from "./run";
 import * as shaders from "./shaders";
 
-export interface Look {
-  colouring: Colouring | null;
-  chains: boolean;
-  /** Grain under the pointer; -1 for none. */
-  highlight: number;
-}
-
 /** Draws the packing of one run on a canvas. */
-export class Renderer {
+export class Renderer implements Drawing {
   run!: Run;
   places!: Places;
   forceScale: ForceScale | null = null;
@@ -217,10 +211,4 @@ export class Renderer {
       walls.flatMap((_, k) => (k % 4 === 0 ? [...walls.slice(k, k + 4), 0, ...paint] : [])),
     );
   }
-}
-
-/** The colour of text here, 0 to 1. */
-function inkOf(element: Element): number[] {
-  const channels = getComputedStyle(element).color.match(/[\d.]+/g) ?? ["0", "0", "0"];
-  return channels.slice(0, 3).map((c) => Number(c) / 255);
 }

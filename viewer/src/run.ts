@@ -31,7 +31,7 @@ const nothing = new Float32Array(0);
 export interface Contacts {
   a: Float32Array;
   b: Float32Array;
-  /** [N/m] */
+  /** [N/m], in space [N] */
   force: Float32Array;
 }
 
@@ -66,6 +66,9 @@ export class Run {
   }
   get hasOutlines(): boolean {
     return this.has("outline.x") && this.outlineBegin.length > 1;
+  }
+  get inSpace(): boolean {
+    return this.has("vertex.x");
   }
   has(name: string): boolean {
     return this.columns.has(name);

@@ -9,7 +9,7 @@ const PREFIXES: [number, string][] = [
   [1e-6, "µ"],
   [1e-9, "n"],
 ];
-const PREFIXED = ["Pa", "m", "s", "m/s", "N/m", "J/m"];
+const PREFIXED = ["Pa", "m", "s", "m/s", "N", "N/m", "J", "J/m"];
 
 /** value [shown unit] = factor * value [SI]. */
 export interface Scale {

@@ -11,7 +11,7 @@ from . import scale_of, write_contacts, write_csv, write_lammps, write_rocrate, 
 from .paraview import write_scene
 
 MOVIES = {"xyz": (write_xyz, "xyz"), "lammps": (write_lammps, "dump"), "vtkhdf": (write_vtkhdf, "vtkhdf")}  # all frames in one file
-KNOW_SPACE = {"vtkhdf", "rocrate"}
+KNOW_SPACE = {"xyz", "lammps", "csv", "contacts", "vtkhdf", "rocrate"}
 ONE_FRAME = {"csv": (write_csv, "csv"), "contacts": (write_contacts, "contacts.csv"), "svg": (write_svg, "svg")}
 
 

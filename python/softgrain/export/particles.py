@@ -2,16 +2,23 @@
 
 import numpy as np
 
+from .. import solids
+
 UNITS = {"position": "m", "radius": "m", "pressure": "Pa", "stress": "Pa", "velocity": "m/s"}
-AXES = {2: ("x", "y"), 4: ("xx", "xy", "yx", "yy")}
+AXES = {2: ("x", "y"), 3: ("x", "y", "z"), 4: ("xx", "xy", "yx", "yy")}
 
 
 def write_xyz(snapshots, file):
-    """Extended XYZ: species X (ASE's name of what is no element), x y z [m], then radius, grain, pressure as far as they are recorded."""
+    """Extended XYZ: species X (ASE's name of what is no element), x y z [m], then radius, grain, pressure as far as they are recorded.
+
+    A grain in space is one particle: the ellipsoid that has its volume and its gyration tensor, as OVITO draws it:
+    aspherical_shape (three semi-axes [m]), orientation (quaternion x y z w)."""
     for snapshot in snapshots:
-        columns = {"species": ["X"] * _count(snapshot), **_place(snapshot), **_marks(snapshot)}
-        kinds = "species:S:1:pos:R:3" + "".join(f":{name}:{_kind(values)}:1" for name, values in
-                                                 _marks(snapshot).items())
+        marks, solid = _marks(snapshot), _ellipsoids(snapshot)
+        names = {name: f"{_kind(values)}:1" for name, values in marks.items()} | {name: f"R:{len(values)}" for name, values in solid.items()}
+        columns = {"species": ["X"] * _count(snapshot), **_place(snapshot), **marks}
+        columns |= {f"{name}_{k}": column for name, values in solid.items() for k, column in enumerate(values)}
+        kinds = "species:S:1:pos:R:3" + "".join(f":{name}:{kind}" for name, kind in names.items())
         file.write(f'{_count(snapshot)}\n{_lattice(snapshot)} Properties={kinds} Time={snapshot.time:.9g} '
                    f"Step={snapshot.step}\n")
         file.writelines(" ".join(row) + "\n" for row in _rows(columns))
@@ -23,7 +30,7 @@ def _lattice(snapshot):
     vectors, origin, repeats = np.diag([x1 - x0, y1 - y0, z1 - z0]), np.array([x0, y0, z0]), [False] * 3
     for k, vector in enumerate(snapshot.cell):
         if vector.any():
-            vectors[k, :2], origin[k], repeats[k] = vector, 0, True
+            vectors[k, :len(vector)], origin[k], repeats[k] = vector, 0, True
     pbc = " ".join("FT"[along] for along in repeats)
     return (f'Lattice="{" ".join(f"{x:.9g}" for x in vectors.ravel())}" '
             f'Origin="{" ".join(f"{x:.9g}" for x in origin)}" pbc="{pbc}"')
@@ -38,8 +45,9 @@ def write_lammps(snapshots, file):
         count = _count(snapshot)
         columns = {"id": np.arange(1, count + 1), "type": np.ones(count, int), **_place(snapshot), **marks}
         bounds = "".join(f"{low:.9g} {high:.9g}\n" for low, high in box(snapshot))
+        along = " ".join("pp" if k < len(snapshot.cell) and solids.in_space(snapshot) and snapshot.cell[k].any() else "ff" for k in range(3))
         file.write(f"ITEM: TIMESTEP\n{snapshot.step}\nITEM: NUMBER OF ATOMS\n{count}\n"
-                   f"ITEM: BOX BOUNDS ff ff ff\n{bounds}ITEM: ATOMS {' '.join(columns)}\n")
+                   f"ITEM: BOX BOUNDS {along}\n{bounds}ITEM: ATOMS {' '.join(columns)}\n")
         file.writelines(" ".join(row) + "\n" for row in _rows(columns))
 
 
@@ -59,7 +67,13 @@ def write_csv(snapshot, file):
 
 
 def box(snapshot):
-    """((x0, x1), (y0, y1), (z0, z1)) [m] around walls and particles; as thick as the thickest particle."""
+    """((x0, x1), (y0, y1), (z0, z1)) [m] around walls and particles; in the plane as thick as the thickest particle.
+
+    In space that of the faces, which hold all surfaces, or reach over those of grains that stick out of a cell."""
+    if solids.in_space(snapshot):
+        faces = snapshot.surface["walls"].reshape(-1, 3)
+        corners = faces if len(snapshot.cell) else np.concatenate([faces, snapshot.outlines["position"]])
+        return [*zip(corners.min(axis=0), corners.max(axis=0))]
     radius = snapshot.particles["radius"][:, None]
     position = snapshot.particles["position"]
     corners = np.concatenate([position - radius, position + radius, snapshot.walls.reshape(-1, 2)])
@@ -72,12 +86,23 @@ def _count(snapshot):
 
 
 def _place(snapshot):
-    x, y = snapshot.particles["position"].T
-    return {"x": x, "y": y, "z": np.zeros_like(x)}
+    x, y, *z = snapshot.particles["position"].T
+    return {"x": x, "y": y, "z": z[0] if z else np.zeros_like(x)}
 
 
 def _marks(snapshot):
-    return {name: snapshot.particles[name] for name in ("radius", "grain", "pressure") if name in snapshot.particles}
+    marks = {name: snapshot.particles[name] for name in ("radius", "grain", "kind", "pressure") if name in snapshot.particles}
+    if solids.in_space(snapshot) and "pressure" in snapshot.surface:
+        marks["pressure"] = solids.pressures(snapshot)
+    return marks
+
+
+def _ellipsoids(snapshot):
+    """Columns of the three semi-axes and of the quaternion; {} in the plane."""
+    if not solids.in_space(snapshot):
+        return {}
+    axes, quaternion = solids.ellipsoids(snapshot)
+    return {"aspherical_shape": axes.T, "orientation": quaternion.T}
 
 
 def _kind(values):

@@ -7,8 +7,8 @@ from pathlib import Path
 import softgrain
 
 from ..plot.style import provenance, style
-from ..verb import carry_out, refuse_space
-from . import Film, encode
+from ..verb import carry_out
+from . import encode, film_of
 
 DURATION = 10  # of a film that says nothing else [s]
 SLOWEST, FASTEST = 5, 30  # frames a second
@@ -22,10 +22,9 @@ def make(options):
     if suffix not in WIDTHS:
         raise ValueError(f"--output {path}: the name must end in .mp4, .gif or .webp; one without an ending is a folder of PNG files")
     run = softgrain.open(options.run)
-    refuse_space(run, "softgrain movie")
     with style():
         width = options.width or WIDTHS[suffix]
-        film = Film(run, width * encode.SMOOTHING if suffix == ".webp" else width)
+        film = film_of(run, width * encode.SMOOTHING if suffix == ".webp" else width)
         rate = options.fps or min(FASTEST, max(SLOWEST, len(film) / DURATION))
         comment = "; ".join(provenance([run]))
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -30,17 +30,12 @@ class Film:
         if len(run) == 0:
             raise NotRecorded(f"{run.path} has no snapshots")
         self.run = run
-        sampled = [run[i] for i in colours.sampled(len(run))]
-        self.pressure = Pressure(sampled)
-        try:
-            self.forces = Forces(sampled)
-        except NotRecorded:
-            self.forces = None
+        self._measure([run[i] for i in colours.sampled(len(run))])
         self.stages = [stage_at(run.series, k, time) for k, time in enumerate(run.times)]
         self.figure, self.axes = page(DOUBLE_COLUMN, HEIGHT)
         self.canvas = FigureCanvasAgg(self.figure)
         self.figure.set_dpi(width / (DOUBLE_COLUMN * MM))
-        self.panel = self._place_picture()
+        self._place_picture()
         self.clock = self.figure.text(PICTURE.x0 / DOUBLE_COLUMN, 1 - 4 / HEIGHT, "", va="top", fontsize=9)
         self.past = self.point = None
         if all(stage.strain is not None and stage.stress is not None for stage in self.stages):
@@ -55,10 +50,7 @@ class Film:
         for artist in list(self.axes.collections):  # the picture before
             artist.remove()
         snapshot, stage = self.run[index], self.stages[index]
-        self.pressure.draw_snapshot(self.panel, snapshot)
-        if self.forces is not None:
-            draw_chains(self.panel, picture.chains(snapshot, self.forces.scale), self.pressure.range.chains)
-        draw_walls(self.panel, snapshot, self.wall)
+        self._draw_picture(snapshot)
         self.clock.set_text(self._words(snapshot, stage))
         if self.point is not None:
             self.point.set_data([stage.strain], [stage.stress / 1e6])
@@ -70,10 +62,29 @@ class Film:
     @property
     def key_colours(self):
         """(n, 3) bytes: those of the pressures, the greys from the paper to the ink, the curve, the point and the chains."""
-        scale = self.pressure.range
+        scale = self.range
         ramp = scale.rgb(np.linspace(scale.low, scale.high, RAMP_COLOURS))
         greys = np.linspace(to_rgb(INK), (1, 1, 1), GREYS)
         return np.rint(255 * np.concatenate([ramp, greys, [to_rgb(c) for c in (BLUE, VERMILLION, scale.chains)]])).astype(np.uint8)
+
+    @property
+    def range(self):
+        """Of the colours [MPa]."""
+        return self.pressure.range
+
+    def _measure(self, sampled):
+        """What the colours and widths of all frames mean, from some of them."""
+        self.pressure = Pressure(sampled)
+        try:
+            self.forces = Forces(sampled)
+        except NotRecorded:
+            self.forces = None
+
+    def _draw_picture(self, snapshot):
+        self.pressure.draw_snapshot(self.panel, snapshot)
+        if self.forces is not None:
+            draw_chains(self.panel, picture.chains(snapshot, self.forces.scale), self.pressure.range.chains)
+        draw_walls(self.panel, snapshot, self.wall)
 
     def _place_picture(self):
         """One panel around all snapshots, and its keys beside it."""
@@ -84,7 +95,7 @@ class Film:
         width, height = around[1] - around[0], around[3] - around[2]
         scale = min(PICTURE.width / width, PICTURE.height / height)
         corner = (PICTURE.x1 - scale * width, (PICTURE.y0 + PICTURE.y1 - scale * height) / 2)
-        panel = panel_at(self.axes, around, corner, scale)
+        self.panel = panel = panel_at(self.axes, around, corner, scale)
         middle = panel.frame.y0 + (1 - KEYS) * panel.frame.height
         upper, lower = (panel._replace(frame=Bbox.from_extents(PICTURE.x0, a, PICTURE.x1, b))
                         for a, b in ((middle, panel.frame.y1), (panel.frame.y0, middle)))
@@ -92,7 +103,6 @@ class Film:
         self.pressure.draw_key(keys, 0)
         if self.forces is not None:
             self.forces.draw_key(keys, 1, self.pressure.range.chains)
-        return panel
 
     def _draw_curve(self):
         """The whole curve, pale; what has been of it; the present point."""

@@ -27,14 +27,8 @@ def draw_space(run):
         raise NotRecorded("no snapshot has surfaces: those are of runs with experiment.dimension = 3")
     if len(snapshots) > MOST_PANELS:
         snapshots = [snapshots[k] for k in np.linspace(0, len(snapshots) - 1, MOST_PANELS).round().astype(int)]
-    pressure = np.concatenate([snapshot.surface["pressure"] for _, snapshot in snapshots]) / 1e6
-    low, high = min(0.0, np.quantile(pressure, 0.01)), max(np.quantile(pressure, 0.99), 1e-12)
-    range_ = colours.Range("viridis", low, high)
-
-    corners = [_project(snapshot.surface["walls"].reshape(-1, 3)) for _, snapshot in snapshots]
-    points = np.concatenate([_project(snapshot.outlines["position"]) for _, snapshot in snapshots] + corners)
-    margin = MARGIN * np.ptp(points[:, 0])
-    (x0, y0), (x1, y1) = points[:, :2].min(0) - margin, points[:, :2].max(0) + margin
+    range_ = range_of_pressures([snapshot for _, snapshot in snapshots])
+    x0, x1, y0, y1 = extent_in_space([snapshot for _, snapshot in snapshots])
     width = (DOUBLE_COLUMN - KEY) / len(snapshots)
     height = min(width * (y1 - y0) / (x1 - x0), 120)
     figure = Figure(figsize=(DOUBLE_COLUMN * MM, (height + HEADING) * MM))
@@ -43,21 +37,43 @@ def draw_space(run):
         axes = figure.add_axes((column * width / page[0], 0, width / page[0], height / page[1]))
         axes.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal")
         axes.set_axis_off()
-        _draw_surfaces(axes, snapshot, range_)
+        draw_surfaces(axes, snapshot, range_)
         figure.text((column + 0.5) * width / page[0], 0.99, _heading("abcd"[column], stage), ha="center", va="top")
-    bar = figure.add_axes(((DOUBLE_COLUMN - KEY + 1) / page[0], 0.15, 2.5 / page[0], 0.6))
-    mappable = ScalarMappable(Normalize(low, high), ListedColormap(range_.rgb(np.linspace(low, high, 256))))
-    figure.colorbar(mappable, cax=bar, label="pressure [MPa]")
+    add_key(figure, range_, ((DOUBLE_COLUMN - KEY + 1) / page[0], 0.15, 2.5 / page[0], 0.6))
     return figure
 
 
-def _draw_surfaces(axes, snapshot, range_):
-    """Faces that look at us, the farthest first; behind them the edges of the walls."""
+def range_of_pressures(snapshots):
+    """One range of colours [MPa] for all of them, without the outermost 1 %. Raises NotRecorded where none has surfaces."""
+    pressures = [snapshot.surface["pressure"] for snapshot in snapshots if "quad" in snapshot.surface]
+    if not pressures:
+        raise NotRecorded("no snapshot has surfaces: those are of runs with experiment.dimension = 3")
+    low, high = np.quantile(np.concatenate(pressures) / 1e6, (0.01, 0.99))
+    return colours.Range("viridis", min(0.0, low), max(high, 1e-12))
+
+
+def extent_in_space(snapshots):
+    """(x0, x1, y0, y1) [m] of all surfaces and walls, as they are seen, with a margin."""
+    points = [points for s in snapshots for points in (s.outlines["position"], s.surface["walls"].reshape(-1, 3))]
+    seen = _project(np.concatenate(points))[:, :2]
+    margin = MARGIN * np.ptp(seen[:, 0])
+    (x0, y0), (x1, y1) = seen.min(0) - margin, seen.max(0) + margin
+    return x0, x1, y0, y1
+
+
+def add_key(figure, range_, place):
+    """The colours and their pressures, at (x, y, width, height) as shares of the figure."""
+    shades = ListedColormap(range_.rgb(np.linspace(range_.low, range_.high, 256)))
+    figure.colorbar(ScalarMappable(Normalize(range_.low, range_.high), shades), cax=figure.add_axes(place), label="pressure [MPa]")
+
+
+def draw_surfaces(axes, snapshot, range_, **look):
+    """Faces that look at us, the farthest first; behind them the edges of the walls. look: of all collections."""
     walls = _project(snapshot.surface["walls"].reshape(-1, 3)).reshape(-1, 4, 3)
     if len(walls) > 2:
-        axes.add_collection(LineCollection([face[list(edge), :2] for face in walls for edge in EDGES], colors=GREY, linewidths=0.4))
+        axes.add_collection(LineCollection([face[list(edge), :2] for face in walls for edge in EDGES], colors=GREY, linewidths=0.4, **look))
     else:
-        axes.add_collection(PolyCollection(walls[:, :, :2], facecolors="#DDDDDD", edgecolors=GREY, linewidths=0.4))
+        axes.add_collection(PolyCollection(walls[:, :, :2], facecolors="#DDDDDD", edgecolors=GREY, linewidths=0.4, **look))
     place = snapshot.outlines["position"][snapshot.surface["quad"]]  # (quads, 4, 3)
     normal = np.cross(place[:, 2] - place[:, 0], place[:, 3] - place[:, 1])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
@@ -66,7 +82,7 @@ def _draw_surfaces(axes, snapshot, range_):
     order = np.flatnonzero(facing)[np.argsort(seen[facing, :, 2].mean(1))]
     shade = DARKEST + (1 - DARKEST) * np.clip(normal[order] @ LIGHT, 0, 1)
     colour = range_.rgb(snapshot.surface["pressure"][order] / 1e6) * shade[:, None]
-    axes.add_collection(PolyCollection(seen[order, :, :2], facecolors=colour, edgecolors=colour, linewidths=0.15))
+    axes.add_collection(PolyCollection(seen[order, :, :2], facecolors=colour, edgecolors=colour, linewidths=0.15, **look))
 
 
 def _directions():

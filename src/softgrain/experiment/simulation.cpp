@@ -214,10 +214,11 @@ template <int Dim>
 Scene SimulationOf<Dim>::scene() const {
   Scene scene = model_->scene(box_);
   if constexpr (Dim == 3) {
+    if (box_.cell.any()) move_into_cell<3>(box_.cell, model_->centres(), scene);
     add_faces(box_, model_->reach(), scene);
     return scene;
   } else {
-    if (box_.cell.any()) move_into_cell(box_.cell, model_->centres(), scene);
+    if (box_.cell.any()) move_into_cell<2>(box_.cell, model_->centres(), scene);
     const double low = box_.bounded(1) ? box_.low(1).point[1] : 0,
                  high = box_.bounded(1) ? box_.high(1).point[1] : box_.height();
     const double tilt = box_.repeats(1) ? box_.cell.edges(0, 1) : 0;

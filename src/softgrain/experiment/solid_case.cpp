@@ -35,7 +35,6 @@ std::string not_yet_in_space(const Case& c) {
   if (c.box.open_top) return not_yet("box.open_top", "leave it out: six walls hold the spheres");
   if (c.contact.surface_energy > 0 || c.contact.wall_surface_energy > 0)
     return not_yet("adhesion", "leave contact.surface_energy and contact.wall_surface_energy out");
-  if (c.output.report) return not_yet("the page of a run", "write output.report = false, or leave it out");
   for (int k = 0; k < kinds_of(c); ++k) {
     const Case kind = case_of_kind(c, k);
     if (is_rigid(kind)) return not_yet("rigid grains", "write model = \"mpm\"");
@@ -52,7 +51,6 @@ void set_defaults_of_space(Case& c, const std::function<bool(const char* key)>& 
   if (!is_in_space(c)) return;
   if (!is_given("mpm.integrator")) c.mpm.integrator = Integrator::symplectic_euler;
   if (!is_given("mpm.cells")) c.mpm.cells = 6;
-  if (!is_given("output.report")) c.output.report = false;
 }
 
 }  // namespace softgrain

@@ -29,12 +29,13 @@ struct Scene {
   Arrays contacts;
   Arrays outlines;  ///< position (v, 2) of the outlines' vertices, grain (v): a new grain, a new polygon
   /// In space positions have three columns, outlines are closed surfaces, and `surface` has their quads:
-  /// quad (q, 4) of vertices, counter-clockwise seen from outside, grain (q), pressure (q) [Pa] of the cell
-  /// behind
+  /// quad (q, 4) of vertices, counter-clockwise seen from outside, grain (q), and of the cell behind pressure
+  /// (q) [Pa], J (q) and Cauchy stress (q, 9) [Pa]; walls (w, 12), four corners of each face [m]
   Arrays surface;
   std::vector<double>
-      wall_segments;         ///< in the plane x0 y0 x1 y1 for each wall, or edge of a periodic cell [m]
-  std::vector<double> cell;  ///< its lattice vectors, x0 y0 x1 y1, 0 for one that it has not [m]; or empty
+      wall_segments;  ///< in the plane x0 y0 x1 y1 for each wall, or edge of a periodic cell [m]
+  /// Its lattice vectors, x0 y0 x1 y1, in space three of three, 0 for one that it has not [m]; or empty
+  std::vector<double> cell;
 };
 
 /// Vectors where they lie in memory: component d of row i is begin[i * row + d * component].

@@ -21,34 +21,41 @@ std::vector<Vec<3>> forces_on_vertices(const SoftViewOf<3>& view) {
   return force;
 }
 
-/// Pressure -tr(sigma)/3 of point p of a grain at F, compression positive [Pa].
-double pressure_at(const SolidGrains& grains, int grain, std::size_t p, const Mat<3>& F) {
+/// Cauchy stress P F^T/J of point p of a grain at F [Pa].
+Mat<3> stress_at(const SolidGrains& grains, int grain, std::size_t p, const Mat<3>& F) {
   const auto place = grains.batch_of(grain);
   const SolidBatch* batch = place.first;  // not a structured binding: clang 14 keeps those out of lambdas
   const int lane = place.second;
-  return std::visit(
-      [&]<class Law>(const Law& law) {
+  const Mat<3> P = std::visit(
+      [&]<class Law>(const Law& law) -> Mat<3> {
         if constexpr (SplitLaw<Law, 3>) {
-          return -contract(law.stress(F), F) / (3 * determinant(F));
+          return law.stress(F);
         } else if constexpr (HistoryLaw<Law, 3>) {
           typename Law::template State<3, double> state;
           for (std::size_t k = 0; k < state.size(); ++k)
             state[k] = batch->history[state.size() * p + k][lane];
-          return -contract(law.stress(F, state, 0), F) / (3 * determinant(F));
+          return law.stress(F, state, 0);
         } else {
-          return 0.0;
+          return {};
         }
       },
       grains.law(*batch));
+  return (1 / determinant(F)) * (P * transpose(F));
 }
 
-/// Pressure in the cell behind each quad of a grain, in the mean: the last cells of the grid, in the order of
-/// the quads [Pa].
-std::vector<double> skin_pressures(const SolidGrains& grains, int grain) {
+/// Means over the cell behind a quad, compression positive.
+struct Skin {
+  double pressure = 0;  ///< -tr(sigma)/3 [Pa]
+  double J = 0;
+  Mat<3> stress;  ///< sigma [Pa]
+};
+
+/// Behind each quad of a grain: the last cells of the grid, in the order of the quads.
+std::vector<Skin> skin_of(const SolidGrains& grains, int grain) {
   const SolidTopology& shape = grains.topology(grain);
-  std::vector<double> pressures;
+  std::vector<Skin> skin;
   for (std::size_t c = shape.grid.cell.size() - shape.grid.quad.size(); c < shape.grid.cell.size(); ++c) {
-    double sum = 0;
+    Skin mean;
     for (std::size_t p = 8 * c; p < 8 * c + 8; ++p) {
       Mat<3> F;
       for (std::size_t a = 0; a < 8; ++a) {
@@ -56,11 +63,13 @@ std::vector<double> skin_pressures(const SolidGrains& grains, int grain) {
         for (int i = 0; i < 3; ++i)
           for (int j = 0; j < 3; ++j) F(i, j) += x[i] * shape.points[p].gradient[a][j];
       }
-      sum += pressure_at(grains, grain, p, F) / 8;
+      mean.stress += (1.0 / 8) * stress_at(grains, grain, p, F);
+      mean.J += determinant(F) / 8;
     }
-    pressures.push_back(sum);
+    mean.pressure = -trace(mean.stress) / 3;
+    skin.push_back(mean);
   }
-  return pressures;
+  return skin;
 }
 
 constexpr std::size_t masters = 16, bodies_of_contact = 3 + masters;
@@ -109,29 +118,36 @@ Scene soft_scene(const SoftViewOf<3>& view) {
   const SolidGrains& grains = view.grains;
   std::vector<Vec<3>> outline;
   grains.gather_outline(outline);
-  std::vector<double> radius, pressure;
-  std::vector<std::int64_t> grain, grain_of_vertex, quads, grain_of_quad;
+  std::vector<double> radius, pressure, dilatation, stress;
+  std::vector<std::int64_t> grain, kind, grain_of_vertex, quads, grain_of_quad;
   for (int g = 0; g < grains.size(); ++g) {
     grain.push_back(g);
+    kind.push_back(grains.kind(g));
     radius.push_back(grains.radius(g));
     const int begin = grains.outline_begin(g), first = grains.topology(g).grid.outline_begin;
     grain_of_vertex.insert(grain_of_vertex.end(), grains.outline_end(g) - begin, g);
     for (const auto& quad : grains.topology(g).grid.quad)
       for (const int node : quad) quads.push_back(begin + node - first);
     grain_of_quad.insert(grain_of_quad.end(), grains.topology(g).grid.quad.size(), g);
-    const std::vector<double> of_grain = skin_pressures(grains, g);
-    pressure.insert(pressure.end(), of_grain.begin(), of_grain.end());
+    for (const Skin& skin : skin_of(grains, g)) {
+      pressure.push_back(skin.pressure);
+      dilatation.push_back(skin.J);
+      stress.insert(stress.end(), skin.stress.c.begin(), skin.stress.c.end());
+    }
   }
   Scene scene;
   scene.particles["position"] = to_array(centres_of(grains));
   scene.particles["radius"] = {1, std::move(radius)};
   scene.particles["grain"] = {1, std::move(grain)};
+  if (grains.kinds() > 1) scene.particles["kind"] = {1, std::move(kind)};
   scene.outlines["position"] = to_array(outline);
   scene.outlines["force"] = to_array(forces_on_vertices(view));
   scene.outlines["grain"] = {1, std::move(grain_of_vertex)};
   scene.surface["quad"] = {4, std::move(quads)};
   scene.surface["grain"] = {1, std::move(grain_of_quad)};
   scene.surface["pressure"] = {1, std::move(pressure)};
+  scene.surface["J"] = {1, std::move(dilatation)};
+  scene.surface["stress"] = {9, std::move(stress)};
   scene.contacts = grain_contacts(contact_points(view), grains.size());
   return scene;
 }

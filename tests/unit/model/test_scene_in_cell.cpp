@@ -17,7 +17,7 @@ TEST_CASE(
   scene.outlines["grain"] = {1, std::vector<std::int64_t>{1}};
   scene.contacts["pair"] = {2, std::vector<std::int64_t>{1, 0}};
   scene.contacts["position"] = to_array(std::vector<Vec<2>>{centres[1] + Vec<2>{-0.3, 0}});
-  move_into_cell(cell, centres, scene);
+  move_into_cell<2>(cell, centres, scene);
 
   const auto rows = [](const Array& array) { return std::get<std::vector<double>>(array.values); };
   const auto close = [](const std::vector<double>& a, const std::vector<double>& b) {
@@ -29,13 +29,27 @@ TEST_CASE(
   CHECK(close(rows(scene.particles["position"]), {1, 0.5, 1.1, 0.5}));
   CHECK(close(rows(scene.outlines["position"]), {1, 0.7}));
   CHECK(close(rows(scene.contacts["position"]), {0.7, 0.5}));
-  CHECK(cell_of(scene).edges == cell.edges);
-  CHECK(cell_of(scene).repeats == cell.repeats);
-  CHECK_FALSE(cell_of(Scene{}).any());
+  CHECK(cell_of<2>(scene).edges == cell.edges);
+  CHECK(cell_of<2>(scene).repeats == cell.repeats);
+  CHECK_FALSE(cell_of<2>(Scene{}).any());
 
   cell = {.repeats = {true, false}};
   cell.edges(0, 0) = 2;
-  move_into_cell(cell, centres, scene);
+  move_into_cell<2>(cell, centres, scene);
   CHECK(scene.cell == std::vector<double>{2, 0, 0, 0});
-  CHECK(cell_of(scene).repeats == cell.repeats);
+  CHECK(cell_of<2>(scene).repeats == cell.repeats);
+}
+
+TEST_CASE("a scene in space shows a sphere in the cell through which it left") {
+  PeriodicCell<3> cell{.repeats = {true, false, true}};
+  cell.edges = {{2, 0, 0, 0, 1, 0, 0, 0, 3}};
+  const std::vector<Vec<3>> centres{{2.5, 1.5, -0.5}};
+  Scene scene;
+  scene.particles["position"] = to_array(centres);
+  scene.particles["grain"] = {1, std::vector<std::int64_t>{0}};
+  move_into_cell<3>(cell, centres, scene);
+  CHECK(std::get<std::vector<double>>(scene.particles["position"].values) ==
+        std::vector<double>{0.5, 1.5, 2.5});
+  CHECK(scene.cell == std::vector<double>{2, 0, 0, 0, 0, 0, 0, 0, 3});
+  CHECK(cell_of<3>(scene).repeats == cell.repeats);
 }

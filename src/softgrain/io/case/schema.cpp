@@ -191,7 +191,7 @@ std::vector<Key> all_keys() {
       KEY(output.samples, "", from_to(1, 1e6), "rows of series.csv, evenly over the run"),
       KEY(output.snapshots, "", from_to(0, 1e5), "restart points, evenly over the run"),
       KEY(output.vtk, "", anything(), "write .vtp files for ParaView beside the snapshots"),
-      KEY(output.report, "", anything(), "write report.html, a page to look at in a browser, when the run is done; in space not yet, and false where it is left out"),
+      KEY(output.report, "", anything(), "write report.html, a page to look at in a browser, when the run is done"),
   };
 }
 

@@ -101,7 +101,8 @@ Datasets datasets_of(const Snapshot& snapshot) {
   add(outline_group, snapshot.scene.outlines);
   add(surface_group, snapshot.scene.surface);
   datasets[walls_path] = {4, snapshot.scene.wall_segments};
-  if (!snapshot.scene.cell.empty()) datasets[cell_path] = {2, snapshot.scene.cell};
+  const std::vector<double>& cell = snapshot.scene.cell;
+  if (!cell.empty()) datasets[cell_path] = {cell.size() == 4 ? 2U : 3U, cell};
   for_each_total(snapshot.report, snapshot.sums, [&](const char* name, const auto& value) {
     datasets[run_group + name] = {1, std::vector{value}};
   });

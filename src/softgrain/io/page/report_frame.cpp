@@ -41,7 +41,7 @@ FrameColumn scalar_of(const Array& array) {
 
 /// What a particle is, and not a field that it carries.
 bool is_field(std::string_view name) {
-  return name != "x" && name != "y" && name != "radius" && name != "grain";
+  return name != "x" && name != "y" && name != "z" && name != "radius" && name != "grain";
 }
 
 void add_fields(ReportFrame& frame, const Scene& scene) {
@@ -131,7 +131,7 @@ void add_grain_means(ReportFrame& frame) {
 /// Of chains across the edges of a periodic cell the page would draw a line through all of it.
 void leave_out_crossing(ReportFrame& frame, const Scene& scene, std::size_t movable,
                         std::vector<Chain>& chains) {
-  const PeriodicCell<2> cell = cell_of(scene);
+  const PeriodicCell<2> cell = cell_of<2>(scene);
   const bool of_grains = frame.contacts_of_grains;
   const FrameColumn x = of_grains ? frame.columns["grain.x"] : column_of(scene.particles.at("position"), 0),
                     y = of_grains ? frame.columns["grain.y"] : column_of(scene.particles.at("position"), 1);
@@ -180,7 +180,7 @@ std::vector<ReportField> fields_of(const ReportFrame& frame) {
                                               {"J", "volume over that at rest", ""},
                                               {"stress", "largest shear stress", "Pa"},
                                               {"velocity", "speed", "m/s"}};
-  constexpr std::string_view prefix = "particle.";
+  const std::string_view prefix = frame.columns.contains("vertex.x") ? "vertex." : "particle.";
   std::vector<ReportField> fields;
   for (const ReportField& field : known)
     if (frame.columns.contains(std::string(prefix) + field.name)) fields.push_back(field);

@@ -32,7 +32,7 @@ struct ReportField {
   std::string name, label, unit;
 };
 
-/// The fields of a frame, those first that are looked at most.
+/// The fields of the particles of a frame, or of the vertices in space, those first that are looked at most.
 std::vector<ReportField> fields_of(const ReportFrame& frame);
 
 /// Do material points come in groups of `size` that lie side by side in one grain, as the four of a cell do?

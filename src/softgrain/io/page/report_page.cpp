@@ -32,15 +32,6 @@ std::string escaped(std::string_view text) {
   return html;
 }
 
-/// Of a run whose case can be read.
-bool is_run_in_space(const RunPaths& paths) {
-  try {
-    return is_in_space(parse_recorded_case(read_file(paths.case_file()), paths.case_file().string()));
-  } catch (const std::exception&) {
-    return false;  // what is wrong with it is told where its frames are read
-  }
-}
-
 /// "squeeze" for out/squeeze, "squeeze/case_run" for the directory that everybody's run has by default; the
 /// whole path where another run has the same name.
 std::string name_of(const fs::path& run, const std::vector<fs::path>& runs) {
@@ -74,11 +65,6 @@ std::vector<std::string> write_report(const std::vector<fs::path>& runs, const f
   std::string title;
   for (const fs::path& directory : runs) {
     const std::string name = name_of(directory, runs);
-    require(!is_run_in_space(RunPaths{directory}),
-            "not yet: the page of {}, a run with experiment.dimension = 3; `softgrain plot` draws it, "
-            "ParaView opens "
-            "its vtk/",
-            directory.string());
     ReportRun run = encode_run(RunPaths{directory}, name);
     payloads.push_back(std::move(run.payload));
     warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());

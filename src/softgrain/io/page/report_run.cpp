@@ -14,8 +14,9 @@
 #include "softgrain/io/format/compress.hpp"
 #include "softgrain/io/format/file.hpp"
 #include "softgrain/io/format/snapshot.hpp"
-#include "softgrain/io/page/report_codec.hpp"
+#include "softgrain/io/page/report_arrays.hpp"
 #include "softgrain/io/page/report_frame.hpp"
+#include "softgrain/io/page/report_surfaces.hpp"
 
 namespace softgrain {
 
@@ -61,6 +62,8 @@ class Frames {
     require(!frames_.empty(), "{}: none of {} snapshots can be shown; `softgrain verify {}` says why",
             paths.root.string(), files.size(), paths.root.string());
     drop_weak_contacts(limits.contacts);
+    part_off_motion(frames_);
+    if (vertices() * static_cast<double>(frames_.size()) > limits.fields) keep_pressure_alone(frames_);
   }
 
   const std::vector<ReportFrame>& all() const { return frames_; }
@@ -71,7 +74,8 @@ class Frames {
   bool read(const fs::path& path) {
     try {
       const Snapshot snapshot = read_snapshot(path);
-      ReportFrame frame = frame_of(snapshot.scene);
+      const bool in_space = snapshot.scene.surface.contains("quad");
+      ReportFrame frame = in_space ? frame_of_surfaces(snapshot.scene) : frame_of(snapshot.scene);
       frame.step = snapshot.checkpoint.step;
       frame.time = snapshot.checkpoint.time;
       frames_.push_back(std::move(frame));
@@ -82,12 +86,17 @@ class Frames {
     }
   }
 
+  double vertices() const {
+    const auto x = frames_.front().columns.find("vertex.x");
+    return x == frames_.front().columns.end() ? 0 : static_cast<double>(x->second.size());
+  }
+
   /// The four points of a cell are shown by their mean, always: within a cell the pressure of a nearly
   /// incompressible material oscillates without meaning.
   void choose_thinning(double frames, const ReportLimits& limits) {
     const auto& columns = frames_.front().columns;
     const auto x = columns.find("particle.x");
-    double count = x == columns.end() ? 0 : frames * static_cast<double>(x->second.size());
+    double count = frames * (x == columns.end() ? vertices() : static_cast<double>(x->second.size()));
     while ((merged_ == 1 || count > limits.particles) && can_merge(frames_.front(), 4 * merged_)) {
       merged_ *= 4;
       count /= 4;
@@ -127,104 +136,6 @@ class Frames {
   std::size_t every_ = 1;   ///< snapshots shown: every which
   std::size_t merged_ = 1;  ///< points in one
 };
-
-/// Whole numbers from 0 that a float holds exactly.
-bool is_whole(const FrameColumn& values) {
-  return std::all_of(values.begin(), values.end(),
-                     [](float v) { return v >= 0 && v < 16777216.0F && v == std::floor(v); });
-}
-
-/// Where something is, and how large; else a field, of which a few levels are seen.
-bool is_geometry(std::string_view name) {
-  return !name.starts_with("particle.") || name == "particle.x" || name == "particle.y" ||
-         name == "particle.radius";
-}
-
-double extent(const FrameColumn& values) {
-  if (values.empty()) return 0;
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  return double{*high} - double{*low};
-}
-
-/// Width or height of the picture, about.
-double picture_size(const ReportFrame& frame) {
-  double size = 0;
-  for (const auto& [name, values] : frame.columns)
-    if (name.ends_with(".x") || name.ends_with(".y") || name.starts_with("wall."))
-      size = std::max(size, extent(values));
-  return size;
-}
-
-constexpr std::size_t few = 1 << 18;  ///< numbers that cost little
-
-/// How far apart numbers may lie that the page need not tell apart, where there are many: outlines 1/8192 of
-/// the picture, particles 1/4096, their fields 1/32 of the range; the widths of lines 1/255.
-double resolution(const std::string& name, const FrameColumn& values, double picture) {
-  if (name == "contact.force") return extent(values) / 255;
-  if (values.size() <= few) return 0;
-  if (!is_geometry(name)) return extent(values) / 31;
-  return picture / (name.starts_with("particle.") ? 4096 : 8192);
-}
-
-/// The middle 99 % keep their values, the rest takes the nearest of these: few levels must do.
-void clip_outliers(FrameColumn& values) {
-  FrameColumn sorted = values;
-  const auto quantile = [&](double share) {
-    const auto place =
-        sorted.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size() - 1));
-    std::nth_element(sorted.begin(), place, sorted.end());
-    return *place;
-  };
-  const float low = quantile(0.005), high = quantile(0.995);
-  for (float& value : values) value = std::clamp(value, low, high);
-}
-
-/// One column in all frames, one after another.
-struct Gathered {
-  FrameColumn values;
-  std::size_t stride = 1;  ///< from a number to the one that it is coded against
-  std::size_t frames = 1;  ///< 1 where it never changes
-};
-
-/// Nothing where frames lack the column or, for other than contacts, their sizes differ.
-Gathered gather(const std::vector<ReportFrame>& frames, const std::string& name) {
-  const bool ragged = name.starts_with("contact.");
-  const FrameColumn& first = frames.front().columns.at(name);
-  // the radius of a material point hardly changes
-  bool changes = ragged;
-  const bool keep_first = name == "particle.radius" && frames.front().columns.contains("outline.x");
-  FrameColumn all;
-  for (const ReportFrame& frame : frames) {
-    const auto column = frame.columns.find(name);
-    if (column == frame.columns.end() || (!ragged && column->second.size() != first.size())) return {};
-    changes = changes || (column->second != first && !keep_first);
-    all.insert(all.end(), column->second.begin(), column->second.end());
-  }
-  if (!changes) return {.values = first};
-  return {std::move(all), ragged ? 1 : first.size(), frames.size()};
-}
-
-void add_arrays(const std::vector<ReportFrame>& frames, Json& header, std::string& planes) {
-  Json arrays = Json::array();
-  const double picture = picture_size(frames.front());
-  for (const auto& [name, first] : frames.front().columns) {
-    auto [values, stride, stored_frames] = gather(frames, name);
-    if (values.empty()) continue;
-    const bool whole = is_whole(values);
-    if (!whole && !is_geometry(name) && values.size() > few) clip_outliers(values);
-    const EncodedArray array = whole ? encode_indices(values, stride)
-                                     : encode_reals(values, stride, resolution(name, values, picture));
-    arrays.push_back({{"name", name},
-                      {"low", array.low},
-                      {"step", array.step},
-                      {"bytes", array.bytes},
-                      {"count", array.count},
-                      {"stride", stride},
-                      {"frames", stored_frames}});
-    planes += array.planes;
-  }
-  header["arrays"] = arrays;
-}
 
 Json provenance(const RunPaths& paths) {
   require(fs::is_directory(paths.root), "{} is not a directory; `softgrain run CASE -o {}` makes a run there",
@@ -286,7 +197,18 @@ ReportRun encode_run(const RunPaths& paths, const std::string& name, const Repor
     header["contacts"].push_back(frame.columns.at("contact.force").size());
   }
   std::string planes;
-  add_arrays(frames.all(), header, planes);
+  header["arrays"] = Json::array();
+  for (const EncodedColumn& column : encode_columns(frames.all())) {
+    const EncodedArray& array = column.array;
+    header["arrays"].push_back({{"name", column.name},
+                                {"low", array.low},
+                                {"step", array.step},
+                                {"bytes", array.bytes},
+                                {"count", array.count},
+                                {"stride", column.stride},
+                                {"frames", column.frames}});
+    planes += array.planes;
+  }
   const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
   run.payload = compressed(little_endian(text.size()) + text + planes, Container::gzip, page_compression);
   run.frames = frames.all().size();

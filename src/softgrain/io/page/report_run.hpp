@@ -14,9 +14,11 @@ struct ReportRun {
 };
 
 /// How much a page may hold before it is thinned: material points are merged further, primaries are
-/// shown at fewer times, weak contacts and rows of the series are left out.
+/// shown at fewer times, as surfaces in space are, whose fields come down to the pressure; weak contacts and
+/// rows of the series are left out.
 struct ReportLimits {
-  double particles = 14e6;  ///< times frames
+  double particles = 14e6;  ///< or vertices in space, times frames
+  double fields = 2e6;      ///< vertices in space, times frames: beyond, of their fields the pressure alone
   double contacts = 3e6;    ///< in all frames
   double rows = 4000;       ///< of the series
 };

@@ -21,12 +21,11 @@ const std::string spheres =
 
 }  // namespace
 
-TEST_CASE("in space a case has explicit steps, six cells and no page where it leaves them out") {
+TEST_CASE("in space a case has explicit steps and six cells where it leaves them out") {
   const Case c = parse_case(spheres, "case.toml");
   CHECK(is_in_space(c));
   CHECK(c.mpm.integrator == Integrator::symplectic_euler);
   CHECK(c.mpm.cells == 6);
-  CHECK(!c.output.report);
   CHECK(resolved_case_text(parse_case(resolved_case_text(c), "resolved")) == resolved_case_text(c));
   CHECK(parse_case(spheres, "case.toml", {"mpm.cells=8"}).mpm.cells == 8);
   CHECK(!is_in_space(parse_case("", "case.toml")));
@@ -37,7 +36,6 @@ TEST_CASE("what is not there yet in space is refused, with the line and a remedy
       {"experiment.model=bpm", "write experiment.model = \"mpm\""},
       {"mpm.integrator=implicit", "ten times"},
       {"experiment.loading=biaxial", "write \"triaxial\""},
-      {"output.report=true", "the page of a run"},
       {"contact.wall_surface_energy=0.1", "adhesion"},
       {"mpm.kinematic_modulus=1e5", "harden alone"},
       {"mpm.cells=30", "more than 24 mpm.cells"}};
