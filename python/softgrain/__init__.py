@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 open = open_run  # softgrain.open reads well where it is used; here it hides the builtin on purpose
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 COMPILED = {"Simulation": "simulation", "Grain": "simulation", "set_threads": "_core", "threads": "_core"}
 

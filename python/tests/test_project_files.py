@@ -23,6 +23,20 @@ class Files(unittest.TestCase):
         self.assertEqual(re.search(r"^version: (\S+)", text("CITATION.cff"), re.M)[1], version)
         self.assertEqual(softgrain.__version__, version)
         self.assertEqual(re.search(r'^version = "(\S+)"', text("pyproject.toml"), re.M)[1], version)
+        self.assertEqual(json.loads(text("viewer/package.json"))["version"], version)
+        lock = json.loads(text("viewer/package-lock.json"))
+        self.assertEqual([lock["version"], lock["packages"][""]["version"]], [version, version])
+        self.assertEqual(set(re.findall(r"softgrain-(\d+\.\d+\.\d+)", text("docs/guide/install.md"))), {version})
+
+    def test_the_changelog_is_cut_into_releases_and_the_last_one_is_the_version(self):
+        titles = re.findall(r"^## (.*)", text("CHANGELOG.md"), re.M)
+        self.assertEqual(titles[0], "Unreleased")
+        releases = [re.fullmatch(r"(\d+\.\d+\.\d+) - (\d{4}-\d\d-\d\d)", title).groups() for title in titles[1:]]
+        self.assertEqual(releases[0][0], softgrain.__version__)
+        self.assertEqual(releases[0][1], re.search(r"^date-released: (\S+)", text("CITATION.cff"), re.M)[1])
+        numbers = [tuple(map(int, number.split("."))) for number, _ in releases]
+        self.assertEqual(numbers, sorted(numbers, reverse=True))
+        self.assertEqual([date for _, date in releases], sorted((date for _, date in releases), reverse=True))
 
     def test_every_work_cited_in_the_paper_is_in_its_bibliography_and_no_other(self):
         cited = set(re.findall(r"@([a-z]+\d{4})", text("paper/paper.md")))
@@ -46,6 +60,7 @@ class Files(unittest.TestCase):
     def test_the_gallery_has_the_page_of_its_table_and_a_small_picture_for_each_case(self):
         gallery = runpy.run_path(str(ROOT / "tools/gallery"))
         self.assertEqual(text("docs/gallery/README.md"), gallery["page"]())
+        self.assertIn(f"| {len(gallery['CASES'])} cases, each by one command", text("docs/README.md"))
         sizes = {path.stem: path.stat().st_size for path in (ROOT / "docs/gallery").glob("*.png")}
         self.assertEqual(sizes.keys(), {case.name for case in gallery["CASES"]})
         self.assertLess(max(sizes.values()), gallery["LARGEST"])
