@@ -110,6 +110,13 @@ inline std::vector<TinyCase> tiny_cases() {
       more.insert(more.end(), {"mpm.law=\"von_mises\"", "mpm.yield_stress=\"0.3 MPa\""});
       cases.push_back({"plastic-sphere_walls", source, more});
     }
+    if (name == "soft_rigid") {
+      Words more = tiny_path(name);
+      more.insert(more.end(), {"experiment.dimension=3", "mpm.cells=2", "mpm.poisson_ratio=0.45",
+                               "sample.packing_fraction=0.36", "loading.wall_velocity=\"2 m/s\"",
+                               "loading.max_strain=0.42", "loading.unload_at=[0.38]"});
+      cases.push_back({"space-soft_rigid", source, more});
+    }
     if (name == "compaction_3d") {
       Words more = tiny_path(name);
       more.insert(more.end(), {"box.x=\"periodic\"", "box.y=\"periodic\"", "box.z=\"periodic\"",

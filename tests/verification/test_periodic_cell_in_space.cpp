@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "softgrain/experiment/sample.hpp"
 #include "support/solid_simulations.hpp"
@@ -111,4 +112,33 @@ TEST_CASE("a cell pressed along z takes the work of its stress, and its other le
   const Mat<3> stress = end.packing->stress;
   CHECK(stress(2, 2) > 1.05 * stress(0, 0));
   CHECK(stress(2, 2) > 1.05 * stress(1, 1));
+}
+
+TEST_CASE("a cell in space keeps three different stresses, and the contacts inside bear them") {
+  Case c = periodic_spheres();
+  c.loading.wall_velocity = 1;
+  c.mpm.damping = 5e3;
+  const Vec<3> target{1e5, 1.5e5, 2e5};
+  Stage press;
+  for (const auto& [part, axis] : {std::pair(Part::yy, 2), std::pair(Part::xx, 1), std::pair(Part::xy, 0)})
+    press.drives.push_back({.part = part, .control = Control::stress, .value = target[axis]});
+  press.until.time = 3e-3;
+  c.stages = {press};
+  SimulationOf<3> simulation = test::solid_simulation_of(c);
+  Vec<3> stress;
+  int looks = 0;
+  while (!simulation.finished()) {
+    simulation.step();
+    if (simulation.time() < 2e-3 || simulation.steps_done() % 10 != 0) continue;
+    ++looks;
+    for (int axis = 0; axis < 3; ++axis) stress[axis] += stress_of(simulation)(axis, axis);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    CAPTURE(axis);
+    CHECK(std::abs(stress[axis] / looks / target[axis] - 1) < 0.02);
+  }
+  CHECK(simulation.box().length(2) / simulation.box().length(0) < 0.99 * c.box.height / c.box.width);
+  CHECK(simulation.outcome().shortfall.empty());
+  const Energies energies = simulation.energies();
+  CHECK(std::abs(energies.error) < 1e-9 * energies.wall_work);
 }

@@ -117,7 +117,7 @@ double first_time_step(const Case& c) {
   if (is_bonded(c)) return c.time.step > 0 ? c.time.step : stable_bond_step(c);
   if (c.time.step > 0) return c.time.step;
   if (is_in_space(c) && !c.kinds.empty()) return least_of_kinds(c, first_time_step);
-  if (is_in_space(c))
+  if (is_in_space(c) && !is_rigid(c))
     return 0.36 * smallest_radius(c) / c.mpm.cells / std::sqrt(wave_modulus(c) / c.grain.density);
   if (is_implicit(c) || is_rigid(c)) return implicit_time_step(c, smallest_radius(c));
   if (!c.kinds.empty()) return least_of_kinds(c, first_time_step);

@@ -15,8 +15,8 @@ std::string not_yet_in_space(const Case& c) {
   const auto not_yet = [](std::string_view what, std::string_view remedy) {
     return std::string("not yet with experiment.dimension = 3: ").append(what).append("; ").append(remedy);
   };
-  if (c.experiment.model != GrainModel::mpm)
-    return not_yet("bonded grains", "write experiment.model = \"mpm\"");
+  if (c.experiment.model == GrainModel::bpm)
+    return not_yet("bonded grains", "write experiment.model = \"mpm\" or \"rigid\"");
   if (c.mpm.formulation == Formulation::updated_lagrangian)
     return not_yet("mpm.formulation \"updated_lagrangian\"", "write \"total_lagrangian\"");
   if (c.mpm.integrator == Integrator::backward_euler)
@@ -37,8 +37,9 @@ std::string not_yet_in_space(const Case& c) {
     return not_yet("adhesion", "leave contact.surface_energy and contact.wall_surface_energy out");
   for (int k = 0; k < kinds_of(c); ++k) {
     const Case kind = case_of_kind(c, k);
-    if (is_rigid(kind)) return not_yet("rigid grains", "write model = \"mpm\"");
-    if (law_choice(kind.mpm.law).flows() && kind.mpm.material.kinematic_modulus > 0)
+    if (kind.grain.shape != RigidShape::disk)
+      return not_yet("grains other than spheres", "leave the shape out");
+    if (!is_rigid(kind) && law_choice(kind.mpm.law).flows() && kind.mpm.material.kinematic_modulus > 0)
       return not_yet("mpm.kinematic_modulus", "leave it out, and let mpm.hardening_modulus harden alone");
   }
   if (c.mpm.cells > most_cells)

@@ -58,6 +58,7 @@ ExplicitStep<Dim>::ExplicitStep(GrainsOf<Dim> soft_grains, Box<Dim> box_of_grain
   if (!bodies_.body.empty())
     for (int v = 0; v < grains.outline_size(); ++v)
       bodies_.of_vertex.push_back(body_of_grain_[grains.grain_of_vertex(v)]);
+  if (Dim == 3 && !bodies_.body.empty()) outline_.rolled.resize(grains.outline_size());
   batch_step_.resize(grains.batches.size());
 }
 
@@ -149,8 +150,7 @@ void ExplicitStep<Dim>::fly_outline(double dt) {
       outline_.start[v] = lane_of(batch.position[i], lane);
       outline_.position[v] = outline_.start[v] + dt * outline_velocity_[v];
     });
-    if constexpr (Dim == 2)
-      if (batch.topology->rigid()) fly_rigid(dt, batch);
+    if (batch.topology->rigid()) fly_rigid(dt, batch);
   });
 }
 
@@ -161,8 +161,7 @@ void ExplicitStep<Dim>::kick(double dt) {
   parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
     thread_local WidePlaces<Dim> force;  // of this batch only: it stays in the processor's cache
     BatchOf<Dim>& batch = grains.batches[b];
-    if constexpr (Dim == 2)
-      if (batch.topology->rigid()) return kick_rigid(dt, batch, batch_step_[b]);
+    if (batch.topology->rigid()) return kick_rigid(dt, batch, batch_step_[b]);
     if (options.damping_share > 0)
       for (std::size_t i = 0; i < batch.position.size(); ++i)
         batch.position[i] += Wide(options.damping_share * dt) * batch.velocity[i];
@@ -234,9 +233,7 @@ void ExplicitStep<Dim>::drift_outline(double dt) {
   parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
     BatchOf<Dim>& batch = grains.batches[b];
     BatchStep& step = batch_step_[b];
-    if (!batch.topology->rigid()) drift_batch(dt, batch, step);
-    if constexpr (Dim == 2)
-      if (batch.topology->rigid()) drift_rigid(dt, batch, step);
+    batch.topology->rigid() ? drift_rigid(dt, batch, step) : drift_batch(dt, batch, step);
     grains.for_each_vertex(
         batch, [&](int v, int i, int lane) { outline_.position[v] = lane_of(batch.position[i], lane); });
   });

@@ -85,7 +85,7 @@ class ExplicitStep {
   /// Of a batch: its outline's nodes at the start of the step, and the work over the step.
   struct BatchStep {
     WidePlaces<Dim> force, velocity;
-    RigidTwist twist;  ///< of rigid grains at the start of the step
+    RigidTwistOf<Dim> twist;  ///< of rigid grains at the start of the step
     Wide internal = 0.0, gravity = 0.0, damping = 0.0;
     FlowOfStep flow;
 
@@ -111,12 +111,11 @@ class ExplicitStep {
   void kick_batch(double dt, const WidePlaces<Dim>& force, BatchOf<Dim>& batch, BatchStep& step) const;
   void drift_batch(double dt, BatchOf<Dim>& batch, BatchStep& step) const;
   void drift_outline(double dt);
-  // rigid grains, in the plane
-  void fly_rigid(double dt, const GrainBatch& batch);
-  void kick_rigid(double dt, GrainBatch& batch, BatchStep& step);
-  void drift_rigid(double dt, GrainBatch& batch, BatchStep& step);
-  void set_bodies(const GrainBatch& batch, const RigidTwist& twist);
-  RigidTwist twist_of_bodies(const GrainBatch& batch) const;
+  void fly_rigid(double dt, const BatchOf<Dim>& batch);
+  void kick_rigid(double dt, BatchOf<Dim>& batch, BatchStep& step);
+  void drift_rigid(double dt, BatchOf<Dim>& batch, BatchStep& step);
+  void set_bodies(const BatchOf<Dim>& batch, const RigidTwistOf<Dim>& twist);
+  RigidTwistOf<Dim> twist_of_bodies(const BatchOf<Dim>& batch) const;
   void add_flow();
   void add_contact_work(double dt);
   void add_overlaps(SoftStepReport& report) const;
@@ -128,7 +127,7 @@ class ExplicitStep {
   OutlineStateOf<Dim> outline_;
   std::vector<Vec<Dim>> outline_velocity_, outline_velocity_start_;
   std::vector<double> inverse_mass_;  // (outline vertices)
-  LumpedBodies bodies_;               // the rigid grains
+  LumpedBodiesOf<Dim> bodies_;        // the rigid grains
   std::vector<int> body_of_grain_;    // or -1
   typename LumpedSystem<Dim>::Scratch lumped_scratch_;
   std::vector<BatchStep> batch_step_;
@@ -136,16 +135,5 @@ class ExplicitStep {
 };
 
 using ExplicitDynamics = ExplicitStep<2>;
-
-template <>
-void ExplicitDynamics::fly_rigid(double dt, const GrainBatch& batch);
-template <>
-void ExplicitDynamics::kick_rigid(double dt, GrainBatch& batch, BatchStep& step);
-template <>
-void ExplicitDynamics::drift_rigid(double dt, GrainBatch& batch, BatchStep& step);
-template <>
-void ExplicitDynamics::set_bodies(const GrainBatch& batch, const RigidTwist& twist);
-template <>
-RigidTwist ExplicitDynamics::twist_of_bodies(const GrainBatch& batch) const;
 
 }  // namespace softgrain

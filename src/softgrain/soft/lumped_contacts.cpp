@@ -52,7 +52,7 @@ inline void LumpedSystem<Dim>::apply_impulse(const Row& row, const Vec<Dim>& dp)
 template <int Dim>
 LumpedSystem<Dim>::LumpedSystem(std::span<const ContactOf<Dim>> contacts, const OutlineStateOf<Dim>& outline,
                                 std::span<Vec<Dim>> velocity, std::span<const double> inverse_mass,
-                                LumpedBodies& bodies, Scratch& scratch)
+                                LumpedBodiesOf<Dim>& bodies, Scratch& scratch)
     : rows_(scratch.rows),
       strips_(scratch.strips),
       velocity_(velocity),

@@ -25,8 +25,8 @@ class LumpedSystem {
   /// impulses, as are those of the rigid bodies; inverse_mass: (outline vertices) [m/kg]. Keeps references to
   /// the velocities, the bodies and the scratch.
   LumpedSystem(std::span<const ContactOf<Dim>> contacts, const OutlineStateOf<Dim>& outline,
-               std::span<Vec<Dim>> velocity, std::span<const double> inverse_mass, LumpedBodies& bodies,
-               Scratch& scratch);
+               std::span<Vec<Dim>> velocity, std::span<const double> inverse_mass,
+               LumpedBodiesOf<Dim>& bodies, Scratch& scratch);
 
   int size() const { return static_cast<int>(rows_.size()); }
   Mat<Dim> delassus_block(int contact) const {
@@ -74,7 +74,7 @@ class LumpedSystem {
   std::vector<Row>& rows_;  // strip by strip
   ContactStrips& strips_;
   std::span<Vec<Dim>> velocity_;
-  std::conditional_t<Dim == 2, BodyContacts, NoBodyContacts> of_bodies_;
+  BodyContacts<Dim> of_bodies_;
   PushedBodies* pushed_ = nullptr;
 };
 

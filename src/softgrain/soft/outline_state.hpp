@@ -17,6 +17,9 @@ struct OutlineStateOf {
   /// step is quasi-static and its end must be an equilibrium (docs/decisions/0026).
   double normals_at = 0.5;
   PeriodicCell<Dim> cell{};  ///< at the end of the step
+  /// (outline vertices) of the centre of a rigid sphere its radius times its turn over the step [m], else 0;
+  /// empty where no grain is rigid
+  std::vector<Vec<Dim>> rolled{};
 
   /// Where place and normal are taken [m].
   Vec<Dim> on_the_way(int vertex) const {

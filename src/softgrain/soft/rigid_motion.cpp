@@ -6,6 +6,9 @@ namespace softgrain {
 namespace {
 
 Wide cross_of(const Vec<2, Wide>& a, const Vec<2, Wide>& b) { return a[0] * b[1] - a[1] * b[0]; }
+Vec<3, Wide> cross_of(const Vec<3, Wide>& a, const Vec<3, Wide>& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 
 }  // namespace
 
@@ -45,17 +48,76 @@ void place_rigid(const GrainBatch& batch, const RigidPose& pose, WideVectors& x)
            Vec<2, Wide>{c * Wide(X[i][0]) - s * Wide(X[i][1]), s * Wide(X[i][0]) + c * Wide(X[i][1])};
 }
 
-RigidTwist rigid_twist(const SoftGrains& grains, const GrainBatch& batch, const WideVectors& x,
-                       const WideVectors& v) {
-  const RigidMass all = rigid_mass(grains, batch);
-  Vec<2, Wide> momentum{};
-  Wide angular = 0.0;
-  for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
-    const Vec<2, Wide> p = grains.node_mass(batch, i) * v[i];
-    momentum += p;
-    angular += cross_of(x[i] - x[0], p);
+RigidPoseOf<3> rigid_pose(const BatchOf<3>& batch, const WidePlaces<3>& x) {
+  const std::vector<Vec<3>>& X = batch.topology->grid.node;
+  const Vec<3, Wide> centre = x.back();
+  // A = (sum r X^T)(sum X X^T)^-1, brought to a rotation: one step of Newton's for the polar factor, from
+  // which the nodes are a round-off away
+  Mat<3, Wide> rX{};
+  Mat<3> XX{};
+  for (std::size_t k = 0; k + 1 < x.size(); ++k) {
+    const Vec<3, Wide> r = x[k] - centre;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        rX(i, j) += X[k][j] * r[i];
+        XX(i, j) += X[k][i] * X[k][j];
+      }
   }
-  return {(1.0 / all.mass) * momentum, angular / all.inertia};
+  const Mat<3> inverse_XX = inverse(XX);
+  const Wide inverse_radius = 1.0 / batch.radius;
+  Mat<3, Wide> A{};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      A(i, j) = inverse_radius *
+                (rX(i, 0) * inverse_XX(0, j) + rX(i, 1) * inverse_XX(1, j) + rX(i, 2) * inverse_XX(2, j));
+  Mat<3, Wide> half = Wide(-0.5) * (transpose(A) * A);
+  for (int i = 0; i < 3; ++i) half(i, i) += 1.5;
+  return {centre, A * half};
+}
+
+/// By Rodrigues' formula, R = 1 + sin(a)/a [w] + (1 - cos(a))/a^2 [w]^2, a = |w|.
+RigidPoseOf<3> moved(const RigidPoseOf<3>& pose, const Vec<3, Wide>& way, const Vec<3, Wide>& angle) {
+  Wide sine, cosine;
+  for (int lane = 0; lane < Wide::size; ++lane) {
+    const double a = std::sqrt(dot(angle, angle)[lane]);
+    sine.set(lane, a > 0 ? std::sin(a) / a : 1.0);
+    cosine.set(lane, a > 0 ? 2 * std::pow(std::sin(a / 2) / a, 2) : 0.5);
+  }
+  Mat<3, Wide> w{};
+  w(2, 1) = angle[0], w(1, 2) = -angle[0];
+  w(0, 2) = angle[1], w(2, 0) = -angle[1];
+  w(1, 0) = angle[2], w(0, 1) = -angle[2];
+  Mat<3, Wide> R = sine * w + cosine * (w * w);
+  for (int i = 0; i < 3; ++i) R(i, i) += 1.0;
+  return {pose.centre + way, R * pose.turn};
+}
+
+void place_rigid(const BatchOf<3>& batch, const RigidPoseOf<3>& pose, WidePlaces<3>& x) {
+  const std::vector<Vec<3>>& X = batch.topology->grid.node;
+  const Mat<3, Wide> RQ = batch.radius * pose.turn;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    x[k] = pose.centre;
+    for (int i = 0; i < 3; ++i)
+      x[k][i] += RQ(i, 0) * Wide(X[k][0]) + RQ(i, 1) * Wide(X[k][1]) + RQ(i, 2) * Wide(X[k][2]);
+  }
+}
+
+template <int Dim>
+RigidTwistOf<Dim> rigid_twist(const GrainsOf<Dim>& grains, const BatchOf<Dim>& batch,
+                              const WidePlaces<Dim>& x, const WidePlaces<Dim>& v) {
+  const RigidMassOf<Dim> all = rigid_mass(grains, batch);
+  const Vec<Dim, Wide> centre = x[centre_node(*batch.topology)];
+  Vec<Dim, Wide> momentum{};
+  SpinOf<Dim, Wide> angular{};
+  for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
+    const Vec<Dim, Wide> p = grains.node_mass(batch, i) * v[i];
+    momentum += p;
+    angular += cross_of(x[i] - centre, p);
+  }
+  if constexpr (Dim == 2)
+    return {(1.0 / all.mass) * momentum, angular / all.inertia};
+  else
+    return {(1.0 / all.mass) * momentum, (1.0 / all.inertia) * angular};
 }
 
 void set_rigid_twist(const RigidTwist& twist, const WideVectors& x, WideVectors& v) {
@@ -65,16 +127,29 @@ void set_rigid_twist(const RigidTwist& twist, const WideVectors& x, WideVectors&
   }
 }
 
-RigidMass rigid_mass(const SoftGrains& grains, const GrainBatch& batch) {
-  RigidMass all{0.0, 0.0};
+void set_rigid_twist(const RigidTwistOf<3>& twist, const WidePlaces<3>& x, WidePlaces<3>& v) {
+  for (std::size_t i = 0; i < x.size(); ++i) v[i] = twist.velocity + cross_of(twist.spin, x[i] - x.back());
+}
+
+template <int Dim>
+RigidMassOf<Dim> rigid_mass(const GrainsOf<Dim>& grains, const BatchOf<Dim>& batch) {
+  RigidMassOf<Dim> all{0.0, 0.0};
   const Wide square = batch.radius * batch.radius;
   for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
     const Wide m = grains.node_mass(batch, i);
-    const Vec<2>& X = batch.topology->grid.node[i];
+    const Vec<Dim>& X = batch.topology->grid.node[i];
     all.mass += m;
     all.inertia += m * (dot(X, X) * square);
   }
+  if constexpr (Dim == 3) all.inertia = (2.0 / 3) * all.inertia;  // integral of y^2 + z^2, not of all three
   return all;
 }
+
+template RigidTwistOf<2> rigid_twist(const GrainsOf<2>&, const BatchOf<2>&, const WidePlaces<2>&,
+                                     const WidePlaces<2>&);
+template RigidTwistOf<3> rigid_twist(const GrainsOf<3>&, const BatchOf<3>&, const WidePlaces<3>&,
+                                     const WidePlaces<3>&);
+template RigidMassOf<2> rigid_mass(const GrainsOf<2>&, const BatchOf<2>&);
+template RigidMassOf<3> rigid_mass(const GrainsOf<3>&, const BatchOf<3>&);
 
 }  // namespace softgrain

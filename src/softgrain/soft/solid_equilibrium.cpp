@@ -155,6 +155,7 @@ template <class Law>
 }  // namespace
 
 void require_solid(const GrainMaterial& material) {
+  if (material.rigid) return;
   std::visit(
       []<class Law>(const Law&) {
         require(

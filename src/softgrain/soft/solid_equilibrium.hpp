@@ -32,7 +32,8 @@ Wide least_J(const SolidBatch& batch);
 /// damping over a share beta of the step:
 ///   dt_c = 2/(omega sqrt(1 + 2 beta)).
 /// omega^2 is the largest eigenvalue of M^-1 K, by Lanczos' method from the force at places nearby, with what
-/// it may still lack added. Single cells, as in the plane, would give less than half of that step.
+/// it may still lack added; infinite where all are rigid. Single cells, as in the plane, would give less than
+/// half of that step.
 double longest_stable_step(const SolidGrains& grains, double damping_share);
 
 /// A quick step [s]: `safety` times the smallest distance of two nodes of a cell over the wave speed.

@@ -140,6 +140,7 @@ double longest_stable_step(const SolidGrains& grains, double damping_share) {
   std::vector<double> largest(grains.batches.size());
   parallel_for(static_cast<int>(largest.size()), [&](int b) {
     const SolidBatch& batch = grains.batches[static_cast<std::size_t>(b)];
+    if (batch.topology->rigid()) return;
     int lanes = 0;
     while (lanes < Wide::size && batch.grain[static_cast<std::size_t>(lanes)] >= 0) ++lanes;
     largest[static_cast<std::size_t>(b)] = Lanczos(grains, batch).largest(lanes);

@@ -1,6 +1,7 @@
 #include "softgrain/soft/solid_topology.hpp"
 
 #include <map>
+#include <numbers>
 #include <utility>
 
 namespace softgrain {
@@ -65,6 +66,28 @@ SolidTopology::SolidTopology(SolidGrid reference_grid)
   }
   patch_fullness = volume / inside;
   for (BrickShape& shape : cell_shapes) shape.inverse_of_all = 1 / shape.inverse_of_all;
+}
+
+SolidTopology::SolidTopology(SolidGrid outline, double body_volume, double moment)
+    : SolidTopology(std::move(outline)) {
+  volume = body_volume;
+  patch_fullness = volume / measure_surface(patches, grid.node.data()).volume;
+  double squares = 0;
+  for (const Vec<3>& X : grid.node) squares += dot(X, X);
+  node_volume.assign(grid.node.size(), moment / squares);
+  node_volume.back() = volume - static_cast<double>(grid.node.size() - 1) * (moment / squares);
+}
+
+SolidTopology rigid_ball(int n) {
+  const SolidGrid ball = ball_grid(n);
+  SolidGrid outline;
+  outline.node.assign(ball.node.begin() + ball.outline_begin, ball.node.end());
+  outline.node.push_back({0, 0, 0});
+  outline.quad = ball.quad;
+  for (auto& quad : outline.quad)
+    for (int& node : quad) node -= ball.outline_begin;
+  constexpr double volume = 4 * std::numbers::pi / 3;
+  return {std::move(outline), volume, 0.6 * volume};
 }
 
 }  // namespace softgrain

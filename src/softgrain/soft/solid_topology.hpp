@@ -25,6 +25,10 @@ struct LaplaceRows {
 struct SolidTopology {
   /// Takes over the grid; finds points, volumes, and the patches of the outline.
   explicit SolidTopology(SolidGrid reference_grid);
+  /// Of a rigid grain: a grid without cells, all of whose nodes are of the outline; the last, which no quad
+  /// has, is the centre of mass at the origin. Its nodes carry the grain's volume and its moment, equal
+  /// shares on the outline: moment is the integral of |X|^2 over the body [R^5].
+  SolidTopology(SolidGrid outline, double body_volume, double moment);
 
   SolidGrid grid;
   std::vector<SolidPoint> points;  ///< (8 cells)
@@ -36,7 +40,10 @@ struct SolidTopology {
   /// (outline vertices) the quads round each; -1 behind the third of a vertex of valence 3
   std::vector<std::array<int, 4>> quads_round;
   double patch_fullness = 1;  ///< volume of the body over that within the smooth outline
-  static constexpr bool rigid() { return false; }
+  bool rigid() const { return grid.cell.empty(); }
 };
+
+/// A rigid sphere of unit radius, drawn by the outline of ball_grid(n). Raises UsageError for n < 2.
+SolidTopology rigid_ball(int n);
 
 }  // namespace softgrain

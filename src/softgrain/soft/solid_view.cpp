@@ -43,6 +43,22 @@ Mat<3> stress_at(const SolidGrains& grains, int grain, std::size_t p, const Mat<
   return (1 / determinant(F)) * (P * transpose(F));
 }
 
+/// Of each rigid grain the mean stress of its contacts, V^-1 sum (x - x_c) (x) f [Pa].
+std::vector<Mat<3>> rigid_stresses(const SoftViewOf<3>& view, std::span<const Vec<3>> centre) {
+  const SolidGrains& grains = view.grains;
+  std::vector<Mat<3>> stress(centre.size());
+  const auto add = [&](int grain, const Vec<3>& x, const Vec<3>& f) {
+    const double volume = body_size(grains.topology(grain)) * body_unit<3>(grains.radius(grain));
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) stress[grain](i, j) += (x - centre[grain])[i] * f[j] / volume;
+  };
+  for (const ContactPointOf<3>& point : contact_points(view)) {
+    add(point.a, point.position, Vec<3>{} - point.force);
+    if (point.b >= 0) add(point.b, point.position - point.image, point.force);
+  }
+  return stress;
+}
+
 /// Means over the cell behind a quad, compression positive.
 struct Skin {
   double pressure = 0;  ///< -tr(sigma)/3 [Pa]
@@ -72,6 +88,10 @@ std::vector<Skin> skin_of(const SolidGrains& grains, int grain) {
   return skin;
 }
 
+std::vector<Skin> skin_of_rigid(const SolidGrains& grains, int grain, const Mat<3>& stress) {
+  return {grains.topology(grain).grid.quad.size(), Skin{-trace(stress) / 3, 1, stress}};
+}
+
 constexpr std::size_t masters = 16, bodies_of_contact = 3 + masters;
 
 }  // namespace
@@ -85,6 +105,8 @@ std::vector<ContactPointOf<3>> contact_points(const SoftViewOf<3>& view) {
     const SurfaceContact& contact = view.contacts[c];
     if (!(view.impulse[c][0] > 0)) continue;
     Vec<3> place = x[contact.vertex];
+    if (const int g = grains.grain_of_vertex(contact.vertex); grains.topology(g).rigid())
+      place -= grains.radius(g) * contact.normal;
     if (contact.wall >= 0 && !contact.is_vertex_at_wall()) {
       place = {};
       contact.for_each_vertex([&](int v, double weight) { place += weight * x[v]; });
@@ -120,6 +142,9 @@ Scene soft_scene(const SoftViewOf<3>& view) {
   grains.gather_outline(outline);
   std::vector<double> radius, pressure, dilatation, stress;
   std::vector<std::int64_t> grain, kind, grain_of_vertex, quads, grain_of_quad;
+  const std::vector<Vec<3>> centre = centres_of(grains);
+  const std::vector<Mat<3>> of_contacts =
+      grains.has_rigid() ? rigid_stresses(view, centre) : std::vector<Mat<3>>{};
   for (int g = 0; g < grains.size(); ++g) {
     grain.push_back(g);
     kind.push_back(grains.kind(g));
@@ -129,14 +154,15 @@ Scene soft_scene(const SoftViewOf<3>& view) {
     for (const auto& quad : grains.topology(g).grid.quad)
       for (const int node : quad) quads.push_back(begin + node - first);
     grain_of_quad.insert(grain_of_quad.end(), grains.topology(g).grid.quad.size(), g);
-    for (const Skin& skin : skin_of(grains, g)) {
+    const bool rigid = grains.topology(g).rigid();
+    for (const Skin& skin : rigid ? skin_of_rigid(grains, g, of_contacts[g]) : skin_of(grains, g)) {
       pressure.push_back(skin.pressure);
       dilatation.push_back(skin.J);
       stress.insert(stress.end(), skin.stress.c.begin(), skin.stress.c.end());
     }
   }
   Scene scene;
-  scene.particles["position"] = to_array(centres_of(grains));
+  scene.particles["position"] = to_array(centre);
   scene.particles["radius"] = {1, std::move(radius)};
   scene.particles["grain"] = {1, std::move(grain)};
   if (grains.kinds() > 1) scene.particles["kind"] = {1, std::move(kind)};
@@ -189,6 +215,7 @@ void visit_contacts(const SolidGrains& grains, int walls, bool repeats, std::vec
       contact.master[k] = body(3 + k);
       contact.weight[k] = place[static_cast<int>(4 + k)];
     }
+    contact.offset = offset_of(contact, grains);
     contacts.push_back(contact);
   }
 }

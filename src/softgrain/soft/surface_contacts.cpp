@@ -10,6 +10,7 @@
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/images.hpp"
 #include "softgrain/soft/carried_impulses.hpp"
+#include "softgrain/soft/sphere_contacts.hpp"
 
 namespace softgrain {
 namespace {
@@ -151,7 +152,7 @@ void find_nearest(const Surfaces& surfaces, const VertexGrid& grid, double reach
   const int grain = surfaces.grains.grain_of_vertex(v);
   grid.for_each_neighbour(v, [&](int w, const Vec<3>& d) {
     const int other = surfaces.grains.grain_of_vertex(w);
-    if (other == grain) return;
+    if (other == grain || surfaces.grains.topology(other).rigid()) return;
     const double distance_squared = dot(d, d);
     if (distance_squared > reach * reach) return;
     const auto found =
@@ -179,6 +180,7 @@ void add_wall_contacts(const Surfaces& surfaces, SurfaceContact contact, double 
 /// Those of one vertex.
 void add_contacts_of_vertex(const Surfaces& surfaces, const VertexGrid& grid, double margin, int v,
                             std::vector<NearestVertex>& near, std::vector<SurfaceContact>& contacts) {
+  if (surfaces.grains.topology(surfaces.grains.grain_of_vertex(v)).rigid()) return;
   add_wall_contacts(surfaces, {.point = v, .vertex = v}, margin, contacts);
   find_nearest(surfaces, grid, surfaces.reach + margin, v, near);
   for (const NearestVertex& nearest : near) {
@@ -192,6 +194,7 @@ void add_contacts_of_patch(const Surfaces& surfaces, double margin, int patch,
                            std::vector<SurfaceContact>& contacts) {
   const auto next = std::upper_bound(surfaces.patch_begin.begin(), surfaces.patch_begin.end(), patch);
   const int grain = static_cast<int>(next - surfaces.patch_begin.begin()) - 1;
+  if (surfaces.grains.topology(grain).rigid()) return;
   const PatchNet& net = surfaces.grains.topology(grain).patches[patch - surfaces.patch_begin[grain]];
   const int begin = surfaces.grains.outline_begin(grain);
   SurfaceContact contact{.point = surfaces.grains.outline_size() + patch, .vertex = begin + net.vertex[5]};
@@ -225,6 +228,7 @@ std::vector<SurfaceContact> SurfaceNeighbours::detect(const SolidGrains& grains,
     append_in_parallel(surfaces.patch_begin.back(), contacts, [&](int q, std::vector<SurfaceContact>& list) {
       add_contacts_of_patch(surfaces, gap, q, list);
     });
+  if (grains.has_rigid()) add_sphere_contacts(grains, state, gap, contacts);
   return contacts;
 }
 
@@ -232,7 +236,18 @@ double gap_now(const SurfaceContact& contact, const OutlineStateOf<3>& state) {
   Vec<3> apart = Vec<3>{} - contact.image;
   if (contact.wall >= 0) apart -= state.walls[contact.wall].point;
   contact.for_each_vertex([&](int v, double weight) { apart += weight * state.position[v]; });
-  return dot(apart, contact.normal);
+  return dot(apart, contact.normal) - contact.offset;
+}
+
+double offset_of(const SurfaceContact& contact, const SolidGrains& grains) {
+  double sum = 0;
+  const auto add = [&](int vertex) {
+    const int grain = grains.grain_of_vertex(vertex);
+    if (grains.topology(grain).rigid()) sum += grains.radius(grain);
+  };
+  add(contact.vertex);
+  if (contact.wall < 0) add(contact.master[5]);
+  return sum;
 }
 
 void update_gap(SurfaceContact& contact, const OutlineStateOf<3>& state) {
@@ -245,6 +260,10 @@ Vec<3> relative_displacement(const SurfaceContact& contact, const OutlineStateOf
   if (contact.wall >= 0) displacement -= state.dt * state.walls[contact.wall].velocity;
   contact.for_each_vertex(
       [&](int v, double weight) { displacement += weight * (state.position[v] - state.start[v]); });
+  if (contact.offset > 0) {  // omega x (-R n) of either side
+    displacement -= cross(state.rolled[contact.vertex], contact.normal);
+    if (contact.wall < 0) displacement -= cross(state.rolled[contact.master[5]], contact.normal);
+  }
   return displacement;
 }
 
@@ -253,7 +272,7 @@ std::vector<Vec<3>> carried_impulses(const SolidGrains& grains, std::span<const 
                                      std::span<const SurfaceContact> contacts) {
   return carry_impulses(
       old, old_impulse, contacts, [](const SurfaceContact& c) { return c.point; },
-      [&](const SurfaceContact& c) { return grains.grain_of_vertex(c.master[5]); },
+      [&](const SurfaceContact& c) { return facing_grain(c, grains); },
       [](const SurfaceContact& was, const Vec<3>& impulse, const SurfaceContact& now) {
         return to_local(now.normal, impulse_vector(was, impulse));
       });

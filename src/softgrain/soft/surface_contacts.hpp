@@ -26,6 +26,7 @@ struct SurfaceContact {
   std::array<double, 16> weight{};
   Vec<3> normal{};        ///< unit, from the master or wall to the point
   double gap = 0;         ///< [m], open > 0
+  double offset = 0;      ///< sum of the radii of the rigid spheres that take part [m]
   Vec<3> image{};         ///< from where the master is to where the point meets it, in a periodic cell [m]
   Vec<3> image_motion{};  ///< of that image against the master over the step [m]
 
@@ -50,6 +51,15 @@ class SurfaceNeighbours {
   std::vector<SurfaceContact> detect(const SolidGrains& grains, const OutlineStateOf<3>& state,
                                      double margin) const;
 };
+
+/// Sum of the radii of the rigid spheres that take part in a contact [m].
+double offset_of(const SurfaceContact& contact, const SolidGrains& grains);
+
+/// The grain on the other side of a contact that has no wall.
+inline int facing_grain(const SurfaceContact& contact, const SolidGrains& grains) {
+  const bool is_middle = contact.point >= grains.outline_size();
+  return grains.grain_of_vertex(is_middle ? contact.vertex : contact.master[5]);
+}
 
 /// Brings the gap of a contact, and its image, up to where its vertices and the periodic cell are now.
 void update_gap(SurfaceContact& contact, const OutlineStateOf<3>& state);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "softgrain/experiment/estimate.hpp"
+#include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/case/case_text.hpp"
@@ -33,7 +34,7 @@ TEST_CASE("in space a case has explicit steps and six cells where it leaves them
 
 TEST_CASE("what is not there yet in space is refused, with the line and a remedy") {
   const std::vector<std::pair<std::string, std::string>> later{
-      {"experiment.model=bpm", "write experiment.model = \"mpm\""},
+      {"experiment.model=bpm", "write experiment.model = \"mpm\" or \"rigid\""},
       {"mpm.integrator=implicit", "ten times"},
       {"experiment.loading=biaxial", "write \"triaxial\""},
       {"contact.wall_surface_energy=0.1", "adhesion"},
@@ -51,7 +52,18 @@ TEST_CASE("what is not there yet in space is refused, with the line and a remedy
     CHECK(mentions(message, "not yet with experiment.dimension = 3: "));
     CHECK(mentions(message, words));
   }
+  CHECK(mentions(refusal(spheres, {"experiment.model=rigid", "grain.shape=polygon"}),
+                 "not yet with experiment.dimension = 3: grains other than spheres"));
   CHECK(mentions(refusal("[experiment]\ndimension = 4\n"), "dimension"));
+}
+
+TEST_CASE("spheres in space may be rigid, all of them or a kind") {
+  CHECK(is_rigid(parse_case(spheres, "case.toml", {"experiment.model=rigid"})));
+  const Case mixed = parse_case(
+      spheres + "[[kind]]\nname = 'soft'\nshare = 1\n[[kind]]\nname = 'hard'\nmodel = 'rigid'\nshare = 1\n",
+      "case.toml");
+  CHECK(is_rigid(case_of_kind(mixed, 1)));
+  CHECK(first_time_step(mixed) == first_time_step(case_of_kind(mixed, 0)));
 }
 
 TEST_CASE("a box of spheres is as high as its volume says, and its path ends where they fill the fraction") {
@@ -118,5 +130,4 @@ TEST_CASE("several kinds of spheres fill a box by their volumes") {
   REQUIRE(c.kinds.size() == 2);
   CHECK(c.kinds[0].grains + c.kinds[1].grains == 30);
   CHECK(c.kinds[0].grains == 27);  // 8 to 1
-  CHECK(mentions(refusal(kinds + "model = 'rigid'\n"), "rigid grains"));
 }

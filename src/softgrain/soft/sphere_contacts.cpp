@@ -1,0 +1,135 @@
+#include "softgrain/soft/sphere_contacts.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <tuple>
+
+#include "softgrain/core/parallel.hpp"
+#include "softgrain/geometry/images.hpp"
+
+namespace softgrain {
+namespace {
+
+/// Spheres that a thread takes at once.
+constexpr int spheres_at_once = 32;
+
+/// What a sphere may meet, and the spheres themselves.
+struct Points {
+  std::vector<Vec<3>> position;
+  /// The contact of each with nothing yet: a vertex of a soft grain, the middle of a patch, or a sphere
+  std::vector<SurfaceContact> contact;
+  std::vector<int> sphere;  ///< of each sphere its number here
+  double largest = 0;       ///< of their radii [m]
+};
+
+Points points_of(const SolidGrains& grains, const OutlineStateOf<3>& state) {
+  Points points;
+  int patch = grains.outline_size();
+  for (int g = 0; g < grains.size(); ++g) {
+    const SolidTopology& shape = grains.topology(g);
+    const int begin = grains.outline_begin(g), end = grains.outline_end(g);
+    for (int v = shape.rigid() ? end - 1 : begin; v < end; ++v) {
+      if (shape.rigid()) points.sphere.push_back(static_cast<int>(points.position.size()));
+      points.position.push_back(state.position[v]);
+      points.contact.push_back({.point = v, .vertex = v});
+    }
+    if (shape.rigid()) points.largest = std::max(points.largest, grains.radius(g));
+    for (const PatchNet& net : shape.patches) {
+      SurfaceContact middle{.point = patch++};
+      if (shape.rigid()) continue;
+      middle.weight = patch_weights(net, 0.5, 0.5);
+      Vec<3> x;
+      for (std::size_t k = 0; k < 16; ++k) {
+        middle.master[k] = begin + net.vertex[k];
+        x += middle.weight[k] * state.position[middle.master[k]];
+      }
+      points.position.push_back(x);
+      points.contact.push_back(middle);
+    }
+  }
+  return points;
+}
+
+/// The image of what the point meets.
+void set_image(SurfaceContact& contact, const OutlineStateOf<3>& state) {
+  if (!state.cell.any()) return;
+  const auto n = state.cell.nearest(state.position[contact.master[5]] - state.position[contact.vertex]);
+  contact.image = state.cell.shift(n);
+  contact.image_motion = state.dt * state.cell.velocity(n);
+}
+
+/// Normal and gap along the line from the master to the point.
+void add_if_near(const SolidGrains& grains, const OutlineStateOf<3>& state, double margin,
+                 SurfaceContact contact, std::vector<SurfaceContact>& contacts) {
+  contact.offset = offset_of(contact, grains);
+  set_image(contact, state);
+  Vec<3> d = Vec<3>{} - contact.image;
+  contact.for_each_vertex([&](int v, double weight) { d += weight * state.position[v]; });
+  const double distance = norm(d);
+  contact.gap = distance - contact.offset;
+  if (!(contact.gap < margin) || distance == 0) return;
+  contact.normal = (1 / distance) * d;
+  contacts.push_back(contact);
+}
+
+/// Those of one sphere with a point beside it.
+void add_contact(const SolidGrains& grains, const OutlineStateOf<3>& state, double margin,
+                 const SurfaceContact& sphere, SurfaceContact other, std::vector<SurfaceContact>& contacts) {
+  if (other.point >= grains.outline_size()) {
+    other.vertex = sphere.vertex;
+    return add_if_near(grains, state, margin, other, contacts);
+  }
+  const bool both = grains.topology(grains.grain_of_vertex(other.vertex)).rigid();
+  if (both && other.vertex >= sphere.vertex) return;
+  other.master.fill(sphere.vertex);
+  other.weight[0] = 1;
+  add_if_near(grains, state, margin, other, contacts);
+}
+
+void add_walls(const SolidGrains& grains, const OutlineStateOf<3>& state, double margin,
+               SurfaceContact contact, std::vector<SurfaceContact>& contacts) {
+  for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
+    if (state.walls[w].open) continue;
+    contact.wall = w;
+    contact.normal = state.walls[w].normal;
+    contact.offset = offset_of(contact, grains);
+    update_gap(contact, state);
+    if (contact.gap < margin) contacts.push_back(contact);
+  }
+}
+
+}  // namespace
+
+void add_sphere_contacts(const SolidGrains& grains, const OutlineStateOf<3>& state, double margin,
+                         std::vector<SurfaceContact>& contacts) {
+  const Points points = points_of(grains, state);
+  if (points.sphere.empty()) return;
+  const double reach = 2 * points.largest + margin;
+  std::optional<Images<3>> images;
+  if (state.cell.any()) images.emplace(points.position, state.cell, reach);
+  const CellGrid<3> grid(images ? std::span<const Vec<3>>(images->position) : points.position, reach);
+  const int count = static_cast<int>(points.sphere.size());
+  std::vector<std::vector<SurfaceContact>> parts((count + spheres_at_once - 1) / spheres_at_once);
+  parallel_for(static_cast<int>(parts.size()), [&](int k) {
+    for (int s = k * spheres_at_once; s < std::min(count, (k + 1) * spheres_at_once); ++s) {
+      const int i = points.sphere[s];
+      const SurfaceContact& sphere = points.contact[i];
+      add_walls(grains, state, margin, sphere, parts[k]);
+      grid.for_each_neighbour(i, [&](int at) {
+        const int j = images ? images->point[static_cast<std::size_t>(at)] : at;
+        if (j != i) add_contact(grains, state, margin, sphere, points.contact[j], parts[k]);
+      });
+    }
+  });
+  for (const auto& part : parts) contacts.insert(contacts.end(), part.begin(), part.end());
+  const auto order = [&](const SurfaceContact& c) {
+    return std::tuple(c.point, c.wall, c.wall < 0 ? facing_grain(c, grains) : 0);
+  };
+  const auto before = [&](const auto& a, const auto& b) { return order(a) < order(b); };
+  std::sort(contacts.begin(), contacts.end(), before);
+  const auto same = [&](const auto& a, const auto& b) { return order(a) == order(b); };
+  contacts.erase(std::unique(contacts.begin(), contacts.end(), same), contacts.end());
+}
+
+}  // namespace softgrain
