@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <vector>
 
 #include "softgrain/core/communicator.hpp"
@@ -14,6 +15,19 @@ namespace softgrain {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// How often a rank looks whether an exchange is over before it sleeps between two looks: some 0.1 ms. Not at
+/// all where ranks wait for one another's cores.
+constexpr int looks_before_sleep = 1000;
+constexpr int shortest_sleep = 20, longest_sleep = 500;  // [us]
+
+/// How long an exchange may take at most: SOFTGRAIN_WATCHDOG in s, or 10 min.
+std::chrono::seconds longest_wait() {
+  constexpr int seconds = 600;
+  const char* wish = std::getenv("SOFTGRAIN_WATCHDOG");
+  const int wanted = wish != nullptr ? std::atoi(wish) : 0;
+  return std::chrono::seconds(wanted > 0 ? wanted : seconds);
+}
 
 /// Counts an exchange and its CPU time.
 class Timed {
@@ -40,6 +54,7 @@ class MpiCommunicator final : public Communicator {
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &on_host);
     MPI_Comm_size(on_host, &ranks_on_host_);
     MPI_Comm_free(&on_host);
+    if (ranks_on_host_ <= sysconf(_SC_NPROCESSORS_ONLN)) looks_ = looks_before_sleep;
     find_hosts();
   }
 
@@ -61,21 +76,27 @@ class MpiCommunicator final : public Communicator {
       count.push_back(static_cast<int>(begin[r + 1] - begin[r]));
       displacement.push_back(static_cast<int>(begin[r]));
     }
-    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, all.data(), count.data(), displacement.data(), MPI_BYTE,
-                   MPI_COMM_WORLD);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, all.data(), count.data(), displacement.data(), MPI_BYTE,
+                    MPI_COMM_WORLD, &request);
+    wait_for(request);
     account.bytes_sent += count[rank_];
     account.bytes_received += static_cast<std::int64_t>(begin[ranks_]) - count[rank_];
   }
 
   std::int64_t largest(std::int64_t number) override {
     const Timed timed(account);
-    MPI_Allreduce(MPI_IN_PLACE, &number, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallreduce(MPI_IN_PLACE, &number, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD, &request);
+    wait_for(request);
     return number;
   }
 
   double sum(double number) override {
     const Timed timed(account);
-    MPI_Allreduce(MPI_IN_PLACE, &number, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallreduce(MPI_IN_PLACE, &number, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD, &request);
+    wait_for(request);
     return number;
   }
 
@@ -83,13 +104,7 @@ class MpiCommunicator final : public Communicator {
     constexpr std::chrono::seconds patience(10);
     MPI_Request all_here = MPI_REQUEST_NULL;
     MPI_Ibarrier(MPI_COMM_WORLD, &all_here);
-    const auto begin = Clock::now();
-    for (int done = 0;;) {
-      MPI_Test(&all_here, &done, MPI_STATUS_IGNORE);
-      if (done != 0) return true;
-      if (Clock::now() - begin > patience) return false;
-      usleep(1000);
-    }
+    return ends_within(all_here, patience);
   }
 
   void leave(bool all_are_here, int exit_code) override {
@@ -98,6 +113,28 @@ class MpiCommunicator final : public Communicator {
   }
 
  private:
+  bool ends_within(MPI_Request& request, std::chrono::seconds most) const {
+    const auto begin = Clock::now();
+    int sleep = shortest_sleep;
+    for (int look = 0, done = 0;; ++look) {
+      MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+      if (done != 0) return true;
+      if (look < looks_) continue;
+      usleep(sleep);
+      sleep = std::min(longest_sleep, sleep + sleep / 4);
+      if (Clock::now() - begin > most) return false;
+    }
+  }
+
+  /// A rank that has lost the others asks to be started again. mpirun or srun then end the others.
+  void wait_for(MPI_Request& request) const {
+    if (ends_within(request, longest_wait_)) return;
+    constexpr int requeue = 75;
+    constexpr char text[] = "error: ranks have not heard from one another for longer than SOFTGRAIN_WATCHDOG (600 s)\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, sizeof text - 1);
+    _exit(requeue);
+  }
+
   void find_hosts() {
     constexpr std::size_t longest = MPI_MAX_PROCESSOR_NAME;
     std::vector<char> own(longest), names(ranks_ * longest);
@@ -110,7 +147,8 @@ class MpiCommunicator final : public Communicator {
     }
   }
 
-  int rank_ = 0, ranks_ = 1, ranks_on_host_ = 1;
+  int rank_ = 0, ranks_ = 1, ranks_on_host_ = 1, looks_ = 0;
+  std::chrono::seconds longest_wait_ = longest_wait();
   std::vector<std::string> hosts_;
 };
 

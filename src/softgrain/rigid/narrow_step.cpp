@@ -80,7 +80,7 @@ SolverReport RigidDynamics<Dim>::solve_in_single_precision(RigidContactSystem<Di
             message(std::span(rows).subspan(grain.begin, grain.end - grain.begin));
           };
           of_grain(particles.velocity);
-          if (contacts.blocks[k].has_friction()) of_grain(particles.spin);
+          of_grain(particles.spin);  // n x (p n) is round-off, not 0
           message(overlaps_[k]);
         });
     move_presses(dt);
