@@ -121,8 +121,7 @@ void carry_out(const RunRequest& request, const RunDirectory& directory, const R
     const bool quiet = options.quiet || communicator().rank() != 0;
     Progress progress(quiet ? ProgressStyle::none : options.progress);
     if (!quiet) progress.message("results go to " + directory.paths().root.string());
-    if (!quiet && !options.verbose && !directory.caution().empty())
-      progress.message(directory.caution());
+    if (!quiet && !options.verbose && !directory.caution().empty()) progress.message(directory.caution());
     if (!quiet)
       for (const std::string& note : notes) progress.message(note);
     outcome = record_run(*simulation, directory, request, progress, signals);

@@ -26,8 +26,8 @@ struct Ranks {
   }
 
   static Words command(int ranks, const Words& words) {
-    Words argv{SOFTGRAIN_MPIRUN, "--oversubscribe", "--bind-to", "none", "-np", std::to_string(ranks),
-               SOFTGRAIN_MPI_PROGRAM};
+    Words argv{SOFTGRAIN_MPIRUN,      "--oversubscribe",    "--bind-to", "none", "-np",
+               std::to_string(ranks), SOFTGRAIN_MPI_PROGRAM};
     argv.insert(argv.end(), words.begin(), words.end());
     return argv;
   }
@@ -45,7 +45,8 @@ struct Ranks {
 TinyCase packing(const std::string& name, const std::string& base, const Words& more) {
   TinyCase tiny{name, base, tiny_settings(base)};
   const Words of_all{"sample.grains=18", "output.vtk=false", "output.samples=60", "output.snapshots=30"};
-  for (const Words& words : {of_all, more}) tiny.settings.insert(tiny.settings.end(), words.begin(), words.end());
+  for (const Words& words : {of_all, more})
+    tiny.settings.insert(tiny.settings.end(), words.begin(), words.end());
   return tiny;
 }
 
@@ -55,8 +56,8 @@ std::vector<TinyCase> packings() {
     words.insert(words.end(), quick.begin(), quick.end());
     return words;
   };
-  return {packing("smooth-bonded", "compaction-bpm", with({"contact.friction=0", "contact.wall_friction=0",
-                                                           "bpm.inner_friction=0"})),
+  return {packing("smooth-bonded", "compaction-bpm",
+                  with({"contact.friction=0", "contact.wall_friction=0", "bpm.inner_friction=0"})),
           packing("rough-bonded", "compaction-bpm", with({"contact.friction=0.5"})),
           packing("explicit", "compaction-mpm",
                   with({"mpm.integrator=\"explicit\"", "time.step=0", "contact.friction=0.5"})),
@@ -78,7 +79,8 @@ void wait_for_snapshots(const Ranks& ranks, const std::string& run, std::size_t 
 
 }  // namespace
 
-// Ranks that are more than the cores wait for one another, so that in `make test` they carry out the last thirtieth.
+// Ranks that are more than the cores wait for one another, so that in `make test` they carry out the last
+// thirtieth.
 TEST_CASE("a run has the same bits on any number of ranks and threads") {
   const Ranks ranks;
   std::vector<TinyCase> cases = packings();
@@ -98,7 +100,8 @@ TEST_CASE("a run has the same bits on any number of ranks and threads") {
       CAPTURE(count);
       CAPTURE(threads);
       const std::string together = tiny.name + "_" + std::to_string(count) + "_" + std::to_string(threads);
-      if (!torture()) copy_cut_off(ranks.workshop, alone, together, ranks.workshop.snapshots(alone).size() - 1);
+      if (!torture())
+        copy_cut_off(ranks.workshop, alone, together, ranks.workshop.snapshots(alone).size() - 1);
       const ProcessResult result =
           ranks.on(count, ranks.begin(tiny, together, {"-j", std::to_string(threads), "--resume"}));
       CAPTURE(result.err);
@@ -114,7 +117,8 @@ TEST_CASE("a killed rank ends all, and other numbers of ranks go on to the same 
   const Ranks ranks;
   TinyCase tiny = packings()[1];
   REQUIRE(run_tiny(ranks.workshop, tiny, "whole").exit_code == 0);
-  if (!torture()) copy_cut_off(ranks.workshop, "whole", "killed", ranks.workshop.snapshots("whole").size() - 4);
+  if (!torture())
+    copy_cut_off(ranks.workshop, "whole", "killed", ranks.workshop.snapshots("whole").size() - 4);
   std::vector<int> counts{3, 2};
   if (torture())
     for (int k = 0; k < 20; ++k) counts.push_back(std::vector{4, 3, 1, 8}[k % 4]);

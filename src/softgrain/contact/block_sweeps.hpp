@@ -14,15 +14,15 @@
 namespace softgrain {
 
 /// Contacts in blocks that share no body, as those inside grains do, and the contacts between them.
-///   sweep_blocks(open, found, b, measured): the impulses of these blocks go ahead by b (Extrapolation) and the
-///   velocities that they give with them; then a sweep. found[block] is its violation, counted only if
+///   sweep_blocks(open, found, b, measured): the impulses of these blocks go ahead by b (Extrapolation) and
+///   the velocities that they give with them; then a sweep. found[block] is its violation, counted only if
 ///   `measured`. On all threads.
 ///   go_ahead_between(b), sweep_between(measured): the same of the contacts between blocks.
 ///   moved(k): how much u of a contact of block k may have changed [m/s] since the end of the sweep (of all
 ///   that was swept then) in which the block had its last turn.
 template <class S>
-concept BlockSystem = requires(S& s, int block, std::span<const int> open, std::span<Violation> found, double b,
-                               bool measured) {
+concept BlockSystem = requires(S& s, int block, std::span<const int> open, std::span<Violation> found,
+                               double b, bool measured) {
   { s.blocks() } -> std::convertible_to<int>;
   {s.sweep_blocks(open, found, b, measured)};
   {s.go_ahead_between(b)};

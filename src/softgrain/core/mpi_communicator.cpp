@@ -69,16 +69,16 @@ class MpiCommunicator final : public Communicator {
     constexpr std::size_t most = 1U << 30U;  // MPI 3 counts in int
     if (all.size() > most)
       throw NumericalError(fmt::format(
-          "ranks exchange {} bytes at once, more than {}: the packing is too large for this version", all.size(),
-          most));
+          "ranks exchange {} bytes at once, more than {}: the packing is too large for this version",
+          all.size(), most));
     std::vector<int> count, displacement;
     for (int r = 0; r < ranks_; ++r) {
       count.push_back(static_cast<int>(begin[r + 1] - begin[r]));
       displacement.push_back(static_cast<int>(begin[r]));
     }
     MPI_Request request = MPI_REQUEST_NULL;
-    MPI_Iallgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, all.data(), count.data(), displacement.data(), MPI_BYTE,
-                    MPI_COMM_WORLD, &request);
+    MPI_Iallgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, all.data(), count.data(), displacement.data(),
+                    MPI_BYTE, MPI_COMM_WORLD, &request);
     wait_for(request);
     account.bytes_sent += count[rank_];
     account.bytes_received += static_cast<std::int64_t>(begin[ranks_]) - count[rank_];
@@ -130,7 +130,8 @@ class MpiCommunicator final : public Communicator {
   void wait_for(MPI_Request& request) const {
     if (ends_within(request, longest_wait_)) return;
     constexpr int requeue = 75;
-    constexpr char text[] = "error: ranks have not heard from one another for longer than SOFTGRAIN_WATCHDOG (600 s)\n";
+    constexpr char text[] =
+        "error: ranks have not heard from one another for longer than SOFTGRAIN_WATCHDOG (600 s)\n";
     [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, sizeof text - 1);
     _exit(requeue);
   }

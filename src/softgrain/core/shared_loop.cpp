@@ -17,7 +17,9 @@ namespace {
 enum class Kind : char { usage = 'u', numerical = 'n', io = 'i', memory = 'm', other = 'o' };
 
 std::string text_of(const std::exception_ptr& error) {
-  const auto of = [](Kind kind, const std::exception& e) { return static_cast<char>(kind) + std::string(e.what()); };
+  const auto of = [](Kind kind, const std::exception& e) {
+    return static_cast<char>(kind) + std::string(e.what());
+  };
   try {
     std::rethrow_exception(error);
   } catch (const UsageError& e) {

@@ -44,7 +44,7 @@ class Shares {
 
 /// Numbers that are sent as they lie in memory: those of lanes too, which copy themselves.
 template <class T>
-inline constexpr bool is_plain = std::is_trivially_destructible_v<T> && std::is_standard_layout_v<T>;
+inline constexpr bool is_plain = std::is_trivially_destructible_v<T>&& std::is_standard_layout_v<T>;
 
 /// What ranks send each other of the results of an item. They are named once, for whoever measures, sends or
 /// receives them.
@@ -64,10 +64,8 @@ class Message {
     (*this)(std::span<T>(values));
   }
   template <class T>
-    requires is_plain<T>
-  void operator()(T& value) {
-    move(&value, sizeof value);
-  }
+  requires is_plain<T>
+  void operator()(T& value) { move(&value, sizeof value); }
   /// values[i] for each of these indices.
   template <class T, class Index>
   void at(std::span<const Index> indices, std::vector<T>& values) {
@@ -144,12 +142,13 @@ class SharedResults {
 
 }  // namespace detail
 
-/// parallel_for over items 0 .. count - 1, each on the rank that has its unit; then all ranks have the results
-/// of all items. result(i, message) names the memory that work(i) has written and that others read. What it
-/// does not name stays as it was on the other ranks. An error reaches all ranks as parallel_for would raise it.
+/// parallel_for over items 0 .. count - 1, each on the rank that has its unit; then all ranks have the
+/// results of all items. result(i, message) names the memory that work(i) has written and that others read.
+/// What it does not name stays as it was on the other ranks. An error reaches all ranks as parallel_for would
+/// raise it.
 template <class UnitOf, class Work, class Result>
-void shared_for(const Shares& shares, int count, const UnitOf& unit_of, const Work& work, const Result& result,
-                Lengths lengths = Lengths::known) {
+void shared_for(const Shares& shares, int count, const UnitOf& unit_of, const Work& work,
+                const Result& result, Lengths lengths = Lengths::known) {
   if (shares.alone()) return parallel_for(count, work);
   const std::vector<int> first = shares.first_items(count, unit_of);
   const int me = communicator().rank(), ranks = communicator().ranks();
@@ -179,7 +178,8 @@ void shared_for(const Shares& shares, int count, const UnitOf& unit_of, const Wo
 template <class Work, class Result>
 void shared_for(const Shares& shares, int count, const Work& work, const Result& result,
                 Lengths lengths = Lengths::known) {
-  shared_for(shares, count, [](int i) { return i; }, work, result, lengths);
+  shared_for(
+      shares, count, [](int i) { return i; }, work, result, lengths);
 }
 
 /// work(i) for those of the units 0 .. count - 1 that are this rank's; the others know nothing of it.

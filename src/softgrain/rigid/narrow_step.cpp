@@ -61,8 +61,8 @@ SolverReport RigidDynamics<Dim>::solve_in_single_precision(RigidContactSystem<Di
   SolverReport report;
   if constexpr (Dim == 2) {
     narrow_.start(
-        particles, contacts, [&](int begin, int end) { prepare(begin, end, dt); }, offset_,
-        solver.relaxation, reference.shares);
+        particles, contacts, [&](int begin, int end) { prepare(begin, end, dt); }, offset_, solver.relaxation,
+        reference.shares);
     NarrowSweeps::System alone(narrow_, particles, contacts, offset_);
     PushedBodies pressed = pressed_walls(dt);
     GrainBlocks grains(narrow_, alone, pressed, contacts, solver.relaxation);

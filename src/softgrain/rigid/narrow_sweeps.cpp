@@ -121,7 +121,8 @@ Violation NarrowSweeps::sweep_block(int k, double ahead, bool measured) {
 
 /// What contacts between grains see of a grain.
 void NarrowSweeps::pass_touched(const Block& block, Message& message) {
-  const auto bodies = std::span<const int>(touched_bodies_).subspan(block.touched.begin, block.touched.end - block.touched.begin);
+  const auto bodies = std::span<const int>(touched_bodies_)
+                          .subspan(block.touched.begin, block.touched.end - block.touched.begin);
   message.at(bodies, velocity_);
   if (block.spins) message.at(bodies, spin_);
 }

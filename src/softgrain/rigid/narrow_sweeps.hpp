@@ -90,8 +90,8 @@ class NarrowSweeps {
     bool spins = false;   // has it friction?
     int touched_made = -1;
     GrainRange touched{};  // its bodies with contacts between grains, in touched_
-    int turn = 0;         // the last sweep of it
-    float moved = 0;      // [m/s]
+    int turn = 0;          // the last sweep of it
+    float moved = 0;       // [m/s]
   };
   /// A body of a grain with contacts between grains, as it was at the end of the sweep that had its grain's
   /// last turn.

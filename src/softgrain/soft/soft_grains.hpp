@@ -167,8 +167,8 @@ class GrainsOf {
   /// number; -1 if none does.
   int runaway_grain(double dt) const;
 
-  /// On all ranks at once: each gets positions, velocities and history of all batches from the ranks that have
-  /// them (ModelOf::gather).
+  /// On all ranks at once: each gets positions, velocities and history of all batches from the ranks that
+  /// have them (ModelOf::gather).
   void gather();
 
   std::vector<Batch> batches;

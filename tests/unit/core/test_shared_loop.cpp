@@ -81,7 +81,8 @@ TEST_CASE("ranks have units side by side, each about an equal part of their weig
       for (int u = 0; u < 12; ++u)
         if (shares.mine(u)) ++mine, of_mine += weight[u];
       CHECK(of_mine <= 20.0 / ranks + 5);  // never more than the largest unit above its part
-      const std::vector<int> begin = ranks == 1 ? std::vector{0, 12} : shares.first_items(12, [](int u) { return u; });
+      const std::vector<int> begin =
+          ranks == 1 ? std::vector{0, 12} : shares.first_items(12, [](int u) { return u; });
       CHECK(begin.front() == 0);
       CHECK(begin.back() == 12);
       CHECK(begin[rank + 1] - begin[rank] == mine);
@@ -102,9 +103,7 @@ TEST_CASE("a shared loop leaves what its results name with all ranks, and nothin
     Result result{std::vector<double>(8), std::vector<double>(8), std::vector<std::vector<int>>(6)};
     shared_for(
         shares, 6, [&](int i) { return units[i]; },
-        [&](int i) {
-          result.squares[units[i]] = result.own[units[i]] = units[i] * units[i];
-        },
+        [&](int i) { result.squares[units[i]] = result.own[units[i]] = units[i] * units[i]; },
         [&](int i, Message& message) { message(result.squares[units[i]]); });
     shared_for(
         shares, 6, [&](int i) { return units[i]; },
@@ -119,7 +118,8 @@ TEST_CASE("a shared loop leaves what its results name with all ranks, and nothin
   for (const Result& result : results) {
     CHECK(result.squares == std::vector<double>{0, 0, 4, 9, 0, 25, 36, 49});
     CHECK(result.divisors == std::vector<std::vector<int>>{{}, {1, 2}, {1, 3}, {1, 5}, {1, 2, 3, 6}, {1, 7}});
-    own += static_cast<int>(std::count_if(result.own.begin(), result.own.end(), [](double x) { return x > 0; }));
+    own +=
+        static_cast<int>(std::count_if(result.own.begin(), result.own.end(), [](double x) { return x > 0; }));
   }
   CHECK(own == 5);
 }

@@ -10,8 +10,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "softgrain/core/error.hpp"
 #include "softgrain/core/communicator.hpp"
+#include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/core/version.hpp"
 #include "softgrain/io/format/file.hpp"

@@ -29,10 +29,10 @@ struct RunRequest {
   bool verbose = false;                                         ///< the log goes to stderr too
 };
 
-/// Fills a run's directory while the run goes; of several ranks the first one does. What is written depends on the simulation's progress alone, so
-/// that a resumed run writes the same: a row of series.csv whenever floor(progress * samples) grows, a
-/// snapshot whenever floor(progress * snapshots) grows or the load turns, and both for the first and the last
-/// state.
+/// Fills a run's directory while the run goes; of several ranks the first one does. What is written depends
+/// on the simulation's progress alone, so that a resumed run writes the same: a row of series.csv whenever
+/// floor(progress * samples) grows, a snapshot whenever floor(progress * snapshots) grows or the load turns,
+/// and both for the first and the last state.
 class RunRecorder final : public Recorder {
  public:
   RunRecorder(const RunPaths& paths, RunRequest request, Progress& progress, SignalWatch& signals);

@@ -108,7 +108,8 @@ RunReport RunRecorder::resume(AnySimulation& simulation) {
     log(fmt::format("resume at step {} from {}", snapshot.checkpoint.step, last_snapshot_.string()));
     frames_ = frames_before(snapshot.checkpoint.step, paths_);
     if (request_.the_case.output.vtk) fs::create_directories(paths_.vtk_folder());
-    if (!is_same_case() || !fs::exists(paths_.case_file())) write_file(paths_.case_file(), request_.case_text);
+    if (!is_same_case() || !fs::exists(paths_.case_file()))
+      write_file(paths_.case_file(), request_.case_text);
     save_scene(simulation, snapshot.scene);
     write_record(simulation);
   });
