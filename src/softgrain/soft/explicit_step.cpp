@@ -78,6 +78,7 @@ SoftStepReport ExplicitStep<Dim>::step(double dt) {
     sub_step(rest / count, report);
     rest = count > 1 ? rest - rest / count : 0;
   }
+  if (box.cell.any()) grains.gather();  // the stress of a cell asks for centres of mass after each step
   return report;
 }
 
