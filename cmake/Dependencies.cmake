@@ -32,4 +32,8 @@ if(SOFTGRAIN_STATIC)  # of what HDF5 asks for, compression is used; --as-needed 
   find_library(AEC_LIBRARY libaec.a REQUIRED)
   list(APPEND HDF5_C_LIBRARIES ${AEC_LIBRARY})
 endif()
+if(SOFTGRAIN_MPI)
+  set(MPI_CXX_SKIP_MPICXX ON)
+  find_package(MPI REQUIRED COMPONENTS CXX)
+endif()
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that softgrain needs; the only place that names them. Does nothing when all are there.
-#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, fit, movie, bench, peers, wheel, viewer, torture, cluster, shells, paraview, vtk, clang, wasm
+#   tools/install_dependencies.sh [--with GROUP]...      GROUP: checks, docs, mpi, fit, movie, bench, peers, wheel, viewer, torture, cluster, shells, paraview, vtk, clang, wasm
 #   tools/install_dependencies.sh --list                 the table below
 # Why each was chosen: docs/decisions/0002-dependencies.md
 set -euo pipefail
@@ -33,6 +33,10 @@ pictures   python3                 softgrain plot
 pictures   python3-numpy           softgrain plot
 pictures   python3-matplotlib      softgrain plot
 pictures   python3-h5py            softgrain plot reads the snapshots
+tests      libopenmpi-dev          softgrain-mpi
+tests      openmpi-bin             mpirun starts its ranks
+mpi        libopenmpi-dev          softgrain-mpi, whose ranks share a run, 0.06 GB
+mpi        openmpi-bin             mpirun starts its ranks
 tests      python3-scipy           tests of softgrain fit and of designs
 tests      python3-ase             reads our extended XYZ
 fit        python3-scipy           softgrain fit, designs of softgrain sweep, 60 MB
@@ -79,7 +83,7 @@ groups="build libraries python tests pictures"
 while (($#)); do
   case "$1" in
     --list) table && exit 0 ;;
-    --with) groups+=" ${2:?--with needs a group: checks, docs, fit, movie, bench, peers, wheel, viewer, torture, cluster, shells, paraview, vtk, clang or wasm}" && shift 2 ;;
+    --with) groups+=" ${2:?--with needs a group: checks, docs, mpi, fit, movie, bench, peers, wheel, viewer, torture, cluster, shells, paraview, vtk, clang or wasm}" && shift 2 ;;
     *) sed -n '2,4s/^# //p' "$0" >&2 && exit 2 ;;
   esac
 done

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "python_verbs.hpp"
+#include "softgrain/core/communicator.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/version.hpp"
 #include "softgrain/io/case/case_file.hpp"
@@ -150,6 +151,12 @@ void refuse_equals_after_letter(int argc, char** argv) {
   }
 }
 
+/// Verbs of which ranks share the work.
+void refuse_ranks_without_work(const CLI::App& verb) {
+  require(communicator().ranks() == 1 || verb.get_name() == "run" || verb.get_name() == "resume",
+          "'{}' is no work for {} ranks: only run and resume are", verb.get_name(), communicator().ranks());
+}
+
 int run_program(int argc, char** argv) {
   refuse_equals_after_letter(argc, argv);
   CLI::App app{"Simulation of soft granular matter", "softgrain"};
@@ -164,6 +171,8 @@ int run_program(int argc, char** argv) {
       "memory, 5 done, but not to be trusted or short of what the case asks, 75 and 130 stopped by a "
       "signal.");
   add_verbs(app);
+  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; }))
+    verb->parse_complete_callback([verb] { refuse_ranks_without_work(*verb); });
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -198,6 +207,43 @@ void keep_memory() {
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 }
 
+/// The first of several ranks speaks for all.
+void begin_ranks([[maybe_unused]] int& argc, [[maybe_unused]] char**& argv) {
+#ifdef SOFTGRAIN_MPI
+  use_communicator(mpi_communicator(argc, argv));
+  if (communicator().rank() != 0 && std::freopen("/dev/null", "w", stdout) == nullptr)
+    throw IoError("cannot open /dev/null");
+#endif
+}
+
+int outcome_of(int argc, char** argv, std::string& error_text) {
+  try {
+    return run_program(argc, argv);
+  } catch (const ExitCode& exit) {
+    return exit.code;
+  } catch (const CaseFileError& error) {
+    error_text = error.what();
+    return usage;
+  } catch (const UsageError& error) {
+    error_text = fmt::format("error: {}", error.what());
+    return usage;
+  } catch (const NumericalError& error) {
+    error_text = fmt::format("error: {}", error.what());
+    return numerical;
+  } catch (const IoError& error) {
+    error_text = fmt::format("error: {}", error.what());
+    return input_output;
+  } catch (const std::system_error& error) {  // the file system's, and fmt's when stdout is full
+    error_text = fmt::format("error: {}", error.what());
+    return input_output;
+  } catch (const std::bad_alloc&) {
+    leave_without_memory();
+  } catch (const std::exception& error) {
+    error_text = fmt::format("error: {}\nthis is a bug, please report", error.what());
+    return our_bug;
+  }
+}
+
 }  // namespace
 }  // namespace softgrain
 
@@ -206,29 +252,11 @@ int main(int argc, char** argv) {
   keep_memory();
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of the write, not the end
   std::set_terminate(on_terminate);
-  try {
-    return run_program(argc, argv);
-  } catch (const ExitCode& exit) {
-    return exit.code;
-  } catch (const CaseFileError& error) {
-    print_error(error.what());
-    return usage;
-  } catch (const UsageError& error) {
-    print_error(fmt::format("error: {}", error.what()));
-    return usage;
-  } catch (const NumericalError& error) {
-    print_error(fmt::format("error: {}", error.what()));
-    return numerical;
-  } catch (const IoError& error) {
-    print_error(fmt::format("error: {}", error.what()));
-    return input_output;
-  } catch (const std::system_error& error) {  // the file system's, and fmt's when stdout is full
-    print_error(fmt::format("error: {}", error.what()));
-    return input_output;
-  } catch (const std::bad_alloc&) {
-    leave_without_memory();
-  } catch (const std::exception& error) {
-    print_error(fmt::format("error: {}\nthis is a bug, please report", error.what()));
-    return our_bug;
-  }
+  begin_ranks(argc, argv);
+  std::string error_text;
+  const int exit_code = outcome_of(argc, argv, error_text);
+  const bool all_here = communicator().wait_for_all();
+  if (!error_text.empty() && (communicator().rank() == 0 || !all_here)) print_error(error_text);
+  communicator().leave(all_here, exit_code);
+  return exit_code;
 }

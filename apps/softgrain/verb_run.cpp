@@ -1,11 +1,13 @@
 #include <CLI/CLI.hpp>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <memory>
 
 #include "choices.hpp"
+#include "softgrain/core/communicator.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/experiment/check_case.hpp"
@@ -95,23 +97,37 @@ RunRequest request_of(const RunOptions& options, bool resume) {
   return request;
 }
 
+/// Ranks on one host share its cores, unless the user has shared them out.
+int threads_of_rank() {
+  return std::getenv("OMP_NUM_THREADS") != nullptr ? threads() : threads() / communicator().ranks_on_host();
+}
+
+/// Ranks on one host share its memory.
+void require_memory_and_disk(const Case& the_case, const RunPaths& paths) {
+  Estimate needed = estimate(the_case);
+  needed.memory *= communicator().ranks_on_host();
+  require_resources(needed, available_resources(paths.root));
+}
+
 /// from: the state to begin with, if any.
 void carry_out(const RunRequest& request, const RunDirectory& directory, const RunOptions& options,
                const std::vector<std::string>& notes, const Checkpoint* from = nullptr) {
   SignalWatch signals;
-  if (options.threads > 0) set_threads(options.threads);
+  set_threads(options.threads > 0 ? options.threads : threads_of_rank());
   const auto simulation = create_any_simulation(request.the_case);
   if (from != nullptr) simulation->begin_from(*from);
   RunOutcome outcome;
   {
-    Progress progress(options.quiet ? ProgressStyle::none : options.progress);
-    if (!options.quiet) progress.message("results go to " + directory.paths().root.string());
-    if (!options.quiet && !options.verbose && !directory.caution().empty())
-      progress.message(directory.caution());
-    if (!options.quiet)
+    const bool quiet = options.quiet || communicator().rank() != 0;
+    Progress progress(quiet ? ProgressStyle::none : options.progress);
+    if (!quiet) progress.message("results go to " + directory.paths().root.string());
+    if (!quiet && !options.verbose && !directory.caution().empty()) progress.message(directory.caution());
+    if (!quiet)
       for (const std::string& note : notes) progress.message(note);
     outcome = record_run(*simulation, directory, request, progress, signals);
   }
+  if (outcome.exit_code != 0 && communicator().rank() != 0) throw ExitCode{outcome.exit_code};
+  if (communicator().rank() != 0) return;
   const RunPaths& paths = directory.paths();
   const bool page = request.the_case.output.report && outcome.record.state == "done";
   if (page) write_report({paths.root}, paths.report_file());
@@ -159,10 +175,10 @@ void run_case(const RunArguments& arguments) {
   if (has_case) refuse_another_case(request, paths, source.path);
   check_case(request.the_case);  // before a large sample is prepared, and before there is a directory
   const bool keep = arguments.force || going_on;
-  if (!keep) require_resources(estimate(request.the_case), available_resources(paths.root));
-  const RunDirectory directory(paths.root,
-                               keep ? RunDirectory::IfNotEmpty::keep : RunDirectory::IfNotEmpty::refuse);
-  carry_out(request, directory, arguments.options, notes_of(reading));
+  if (!keep) require_memory_and_disk(request.the_case, paths);
+  const auto directory = RunDirectory::take(
+      paths.root, keep ? RunDirectory::IfNotEmpty::keep : RunDirectory::IfNotEmpty::refuse);
+  carry_out(request, *directory, arguments.options, notes_of(reading));
 }
 
 /// "RUN_on" beside a run from which another begins.
@@ -186,10 +202,10 @@ void run_from(const RunArguments& arguments) {
   check_case(request.the_case);
   const fs::path beside = own.empty() ? directory_beside(origin.paths.root) : default_directory(own);
   const RunPaths paths{arguments.options.directory.empty() ? beside : fs::path(arguments.options.directory)};
-  if (!arguments.force) require_resources(estimate(request.the_case), available_resources(paths.root));
-  const RunDirectory directory(
+  if (!arguments.force) require_memory_and_disk(request.the_case, paths);
+  const auto directory = RunDirectory::take(
       paths.root, arguments.force ? RunDirectory::IfNotEmpty::keep : RunDirectory::IfNotEmpty::refuse);
-  carry_out(request, directory, arguments.options, notes_of(reading), &origin.snapshot.checkpoint);
+  carry_out(request, *directory, arguments.options, notes_of(reading), &origin.snapshot.checkpoint);
 }
 
 Case case_to_resume(const std::string& text, const RunPaths& paths) {
@@ -212,10 +228,10 @@ void resume_run(const RunOptions& options) {
           "writes it again",
           options.directory, options.directory);
   RunRequest request = request_of(options, true);
-  const RunDirectory directory(paths.root, RunDirectory::IfNotEmpty::keep);
+  const auto directory = RunDirectory::take(paths.root, RunDirectory::IfNotEmpty::keep);
   request.case_text = read_file(paths.case_file());
   request.the_case = case_to_resume(request.case_text, paths);
-  carry_out(request, directory, options, notes_of({request.the_case, {}, {}}));
+  carry_out(request, *directory, options, notes_of({request.the_case, {}, {}}));
 }
 
 }  // namespace

@@ -57,6 +57,7 @@ class Process {
     std::fclose(err_);
   }
 
+  pid_t id() const { return pid_; }
   void send(int signal) const { kill(pid_, signal); }
 
   ProcessResult wait() {

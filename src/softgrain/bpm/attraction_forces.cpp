@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/cell_grid.hpp"
 #include "softgrain/math/lanes.hpp"
 
@@ -12,9 +11,11 @@ AttractionForces::AttractionForces(std::vector<Attraction> laws) : laws_(std::mo
   for (const Attraction& law : laws_) require_valid(law);
 }
 
-void AttractionForces::update(const RigidParticles<2>& particles, const NeighbourReference<2>& reference) {
+void AttractionForces::update(const RigidParticles<2>& particles, const NeighbourReference<2>& reference,
+                              const Shares& shares) {
   rows_.resize(reference.grains.size());
-  parallel_for(static_cast<int>(rows_.size()), [&](int g) {
+  for (std::size_t g = 0; g < rows_.size(); ++g) rows_[g].grain = reference.grains[g];
+  own_for(shares, static_cast<int>(rows_.size()), [&](int g) {
     if (rows_[g].made == reference.made[g]) return;
     rows_[g] = rows_of(particles, reference, reference.grains[g]);
     rows_[g].made = reference.made[g];
@@ -25,7 +26,7 @@ AttractionForces::Rows AttractionForces::rows_of(const RigidParticles<2>& partic
                                                  const NeighbourReference<2>& reference,
                                                  const GrainRange& grain) {
   Rows rows;
-  rows.first = grain.begin;
+  rows.grain = grain;
   const auto x = std::span(reference.position).subspan(grain.begin, grain.end - grain.begin);
   const double* radius = particles.radius.data() + grain.begin;
   const double widest = *std::max_element(radius, radius + x.size());
@@ -43,15 +44,21 @@ AttractionForces::Rows AttractionForces::rows_of(const RigidParticles<2>& partic
   return rows;
 }
 
-void AttractionForces::add_forces(const RigidParticles<2>& particles, std::span<Vec<2>> force) const {
-  parallel_for(static_cast<int>(rows_.size()), [&](int g) { add_forces(particles, rows_[g], force); });
+void AttractionForces::add_forces(const RigidParticles<2>& particles, std::span<Vec<2>> force,
+                                  const Shares& shares) const {
+  shared_for(
+      shares, static_cast<int>(rows_.size()), [&](int g) { add_forces(particles, rows_[g], force); },
+      [&](int g, Message& message) {
+        const GrainRange& grain = rows_[g].grain;
+        message(force.subspan(grain.begin, grain.end - grain.begin));
+      });
 }
 
 void AttractionForces::add_forces(const RigidParticles<2>& particles, const Rows& rows,
                                   std::span<Vec<2>> force) const {
   const double* radius = particles.radius.data();
   for (int row = 0; row < rows.size(); ++row) {
-    const int i = rows.first + row;
+    const int i = rows.grain.begin + row;
     const Attraction& attraction = law(particles.grain[i]);
     const Vec<2>& x = particles.position[i];
     Lanes sum_x = splat(0), sum_y = splat(0);

@@ -2,6 +2,7 @@
 #include <span>
 #include <vector>
 
+#include "softgrain/core/shared_loop.hpp"
 #include "softgrain/interaction/attraction.hpp"
 #include "softgrain/rigid/neighbours.hpp"
 #include "softgrain/rigid/particles.hpp"
@@ -19,10 +20,13 @@ class AttractionForces {
   explicit AttractionForces(std::vector<Attraction> laws);
 
   /// Makes the lists of grains again whose reference has moved on: all pairs closer than 2 a0 + skin there.
-  void update(const RigidParticles<2>& particles, const NeighbourReference<2>& reference);
+  /// Of all grains, or of those of this rank.
+  void update(const RigidParticles<2>& particles, const NeighbourReference<2>& reference,
+              const Shares& shares = {});
 
-  /// F_i += sum_j F(r_ij) (x_j - x_i)/r_ij  [N/m]
-  void add_forces(const RigidParticles<2>& particles, std::span<Vec<2>> force) const;
+  /// F_i += sum_j F(r_ij) (x_j - x_i)/r_ij  [N/m]; with shares each rank needs the lists of its own grains.
+  void add_forces(const RigidParticles<2>& particles, std::span<Vec<2>> force,
+                  const Shares& shares = {}) const;
 
   /// sum over pairs of U [J/m].
   double energy(const RigidParticles<2>& particles) const;
@@ -33,7 +37,7 @@ class AttractionForces {
     for (const Rows& rows : rows_)
       for (int row = 0; row < rows.size(); ++row)
         for (int k = rows.begin[row]; k < rows.begin[row + 1]; ++k)
-          if (const int i = rows.first + row; i < rows.neighbour[k]) visit(i, rows.neighbour[k]);
+          if (const int i = rows.grain.begin + row; i < rows.neighbour[k]) visit(i, rows.neighbour[k]);
   }
 
   const Attraction& law(int grain) const { return laws_.size() == 1 ? laws_.front() : laws_[grain]; }
@@ -42,7 +46,7 @@ class AttractionForces {
   /// The neighbours of each primary of a grain, as far as they come after it.
   struct Rows {
     int made = -1;  // as NeighbourReference::made
-    int first = 0;  // primary of the first row
+    GrainRange grain{};
     std::vector<int> begin{0};
     std::vector<int> neighbour;  // rows are padded to four lanes with the primary itself
 

@@ -50,6 +50,7 @@ BondedGrains::BondedGrains(BondedGrainsSetup setup)
       dynamics_(std::move(setup.particles), {}, setup.options, setup.skin),
       most_sweeps_(setup.options.solver.max_sweeps) {
   dynamics_.set_friction(friction_.rule(dynamics_.particles.grain));
+  dynamics_.share_grains();
   set_reference(dynamics_.reference, dynamics_.particles);
   dynamics_.rebuild_contacts();
   attraction_.update(dynamics_.particles, dynamics_.reference);
@@ -67,8 +68,9 @@ StepReport BondedGrains::step(Box<2>& box, double dt) {
   dynamics_.options.solver.max_sweeps = most_sweeps_ * (impulse_time_ == 0 ? first_step_factor : 1);
   StepReport report = dynamics_.step(
       [&](const RigidParticles<2>& particles, std::span<Vec<2>> force) {
-        attraction_.update(particles, dynamics_.reference);
-        attraction_.add_forces(particles, force);
+        const Shares& shares = dynamics_.reference.shares;
+        attraction_.update(particles, dynamics_.reference, shares);
+        attraction_.add_forces(particles, force, shares);
         if (gravity_ == Vec<2>{}) return;
         for (int i = 0; i < particles.size(); ++i) force[i] += particles.mass[i] * gravity_;
       },
@@ -83,6 +85,11 @@ StepReport BondedGrains::step(Box<2>& box, double dt) {
   box.cell = dynamics_.particles.cell;
   add_work();
   return report;
+}
+
+void BondedGrains::gather() {
+  dynamics_.gather();
+  attraction_.update(dynamics_.particles, dynamics_.reference);
 }
 
 void BondedGrains::add_work() {

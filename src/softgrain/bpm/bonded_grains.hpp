@@ -53,6 +53,7 @@ class BondedGrains final : public Model {
   void follow(const Mat<2>& L) override;
   bool is_exhausted(const StepReport& report, const Box<2>& box) const override;
   std::string exhaustion(const Box<2>& box) const override;
+  void gather() override;
   void visit(StateVisitor& visit) override;
   void go_on(const Box<2>& box) override;
   Settings settings() const override;

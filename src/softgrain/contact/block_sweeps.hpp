@@ -3,26 +3,28 @@
 #include <cmath>
 #include <concepts>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "softgrain/contact/extrapolate.hpp"
 #include "softgrain/contact/law.hpp"
 #include "softgrain/contact/residual.hpp"
 #include "softgrain/contact/solver_options.hpp"
-#include "softgrain/core/parallel.hpp"
 
 namespace softgrain {
 
 /// Contacts in blocks that share no body, as those inside grains do, and the contacts between them.
-///   sweep_block(k, b, measured): the impulses of block k go ahead by b (Extrapolation) and the velocities
-///   that they give with them; then a sweep. Its violation is counted only if `measured`. On any thread.
+///   sweep_blocks(open, found, b, measured): the impulses of these blocks go ahead by b (Extrapolation) and
+///   the velocities that they give with them; then a sweep. found[block] is its violation, counted only if
+///   `measured`. On all threads.
 ///   go_ahead_between(b), sweep_between(measured): the same of the contacts between blocks.
 ///   moved(k): how much u of a contact of block k may have changed [m/s] since the end of the sweep (of all
 ///   that was swept then) in which the block had its last turn.
 template <class S>
-concept BlockSystem = requires(S& s, int block, double b, bool measured) {
+concept BlockSystem = requires(S& s, int block, std::span<const int> open, std::span<Violation> found,
+                               double b, bool measured) {
   { s.blocks() } -> std::convertible_to<int>;
-  { s.sweep_block(block, b, measured) } -> std::same_as<Violation>;
+  {s.sweep_blocks(open, found, b, measured)};
   {s.go_ahead_between(b)};
   { s.sweep_between(measured) } -> std::same_as<Violation>;
   { s.moved(block) } -> std::convertible_to<double>;
@@ -73,8 +75,7 @@ class BlockSweeps {
   template <BlockSystem System>
   Violation sweep(System& system, double b, bool measured) {
     system.go_ahead_between(b);
-    parallel_for(static_cast<int>(open_.size()),
-                 [&](int k) { last_[open_[k]] = system.sweep_block(open_[k], b, measured); });
+    system.sweep_blocks(open_, last_, b, measured);
     Violation violation = system.sweep_between(measured);
     if (!measured) return violation;
     for (int block = 0; block < static_cast<int>(last_.size()); ++block) {

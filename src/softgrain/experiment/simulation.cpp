@@ -77,9 +77,10 @@ StepReport SimulationOf<Dim>::step() {
 
 /// Energies take a look at every body: only where a stage asks for them.
 template <int Dim>
-StepFelt SimulationOf<Dim>::felt_in(const StepReport& report) const {
+StepFelt SimulationOf<Dim>::felt_in(const StepReport& report) {
   StepFelt felt{.overlap_mean = report.overlap_mean, .unrest = 0};
   if (!loading_.asks_for_rest()) return felt;
+  gather();
   const Energies energies = this->energies();
   felt.unrest = energies.kinetic / std::abs(energies.stored);
   return felt;

@@ -47,6 +47,8 @@ class AnySimulation {
   /// be had.
   virtual SolvedContactProblem step_and_catch_problem() = 0;
 
+  /// On several ranks, on all at once, before one asks for what follows (ModelOf::gather).
+  virtual void gather() {}
   /// What a row of series.csv says now (observe/columns.hpp). Wall forces and iterations are means over the
   /// steps since `begin_row`.
   virtual Observation observe() const = 0;
@@ -101,6 +103,7 @@ class SimulationOf final : public AnySimulation {
   StepReport step() override;
   SolvedContactProblem step_and_catch_problem() override;
 
+  void gather() override { model_->gather(); }
   Observation observe() const override;
   void begin_row() override;
   Energies energies() const;
@@ -121,7 +124,7 @@ class SimulationOf final : public AnySimulation {
     double duration = 0;          // [s]
   };
   void apply_settings() { model_->set(initial_.then(loading_.settings())); }
-  StepFelt felt_in(const StepReport& report) const;
+  StepFelt felt_in(const StepReport& report);
   PackingMeasures packing() const;
   BodiesOf<Dim> over_cell(BodiesOf<Dim> bodies) const;
   double largest_rate() const;

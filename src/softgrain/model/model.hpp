@@ -96,6 +96,9 @@ class ModelOf {
   /// One step of dt [s]; the walls of the box move by dt times their velocity and get the impulses that they
   /// felt. Raises NumericalError where the state is not finite or no solution is found.
   virtual StepReport step(Box<Dim>& box, double dt) = 0;
+  /// On several ranks, on all at once: each gets what a step left with the rank of a grain alone, before one
+  /// looks at more than centres, extent and contacts between grains.
+  virtual void gather() {}
   /// After a step: true if no smaller box holds the grains. Raises NumericalError where its overlaps show
   /// that the step has no solution.
   virtual bool is_exhausted(const StepReport&, const Box<Dim>&) const { return false; }

@@ -49,6 +49,11 @@ struct ListedBlock {
   Sequence frictionless, frictional, pressed, crossing;
 };
 
+void pass(ListedBlock& listed, Message& message) {
+  for (Sequence* sequence : {&listed.frictionless, &listed.frictional, &listed.pressed, &listed.crossing})
+    message.list(sequence->pairs), message(sequence->in_fours);
+}
+
 /// Pairs among the particles of `range`, and walls n, n + 1, ...
 template <int Dim>
 ListedBlock listed(std::vector<BodyPair> pairs, const FrictionRule& rule, const GrainRange& range,
@@ -187,7 +192,12 @@ RigidContacts<Dim> candidate_contacts(const RigidParticles<Dim>& particles,
     if (!is_kept(list)) made[list] = make_list(particles, reference, friction, list);
   };
   make(grains);  // on all threads by itself
-  parallel_for(grains, make);
+  shared_for(
+      reference.shares, grains, make,
+      [&](int list, Message& message) {
+        if (!is_kept(list)) pass(made[list], message);
+      },
+      Lengths::told);
 
   contacts.blocks.clear();
   int size = 0;

@@ -23,6 +23,7 @@ struct ContactBlock {
 
   int begin() const { return frictionless.begin; }
   int end() const { return std::max({frictional.end, pressed.end, crossing.end}); }
+  bool has_friction() const { return frictional.end > frictional.begin; }
 };
 
 /// Candidate contacts, in the order of the sweep: all pairs that could touch before the next rebuild. Open

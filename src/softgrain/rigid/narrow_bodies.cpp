@@ -13,7 +13,10 @@ void NarrowSweeps::take_bodies(const RigidParticles<2>& particles, const RigidCo
   inertia_ratio_ = static_cast<float>(particles.inertia_ratio);
   blocks_.resize(contacts.blocks.empty() ? 0 : contacts.blocks.back().list + 1);
   listed_.clear();
-  for (const ContactBlock& block : contacts.blocks) listed_.push_back(block.list);
+  for (const ContactBlock& block : contacts.blocks) {
+    listed_.push_back(block.list);
+    blocks_[block.list].spins = block.has_friction();
+  }
   velocity_.resize(bodies_ + blocks_.size());
   spin_.resize(bodies_ + blocks_.size());
   start_.resize(bodies_), end_.resize(bodies_);
@@ -26,6 +29,11 @@ void NarrowSweeps::take_bodies(const RigidParticles<2>& particles, const RigidCo
       list_of_[i] = list;
     }
   }
+  if (!listed_.empty())
+    if (Block& between = blocks_[listed_.back()]; between.touched_made != contacts.blocks.back().made) {
+      take_touched(contacts, contacts.blocks.back());
+      between.touched_made = contacts.blocks.back().made;
+    }
   parallel_ranges(bodies_, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const Vec<2>& v = particles.velocity[i];
@@ -52,8 +60,17 @@ void NarrowSweeps::take_touched(const RigidContacts<2>& contacts, const ContactB
   std::sort(bodies.begin(), bodies.end());
   bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
   touched_.clear();
-  for (const int body : bodies)
-    if (list_of_[body] >= 0) touched_.push_back({.body = body, .list = list_of_[body]});
+  touched_bodies_.clear();
+  for (Block& block : blocks_) block.touched = {};
+  for (const int body : bodies) {
+    if (list_of_[body] < 0) continue;
+    const int at = static_cast<int>(touched_.size());
+    GrainRange& of_grain = blocks_[list_of_[body]].touched;
+    if (of_grain.end == 0) of_grain.begin = at;
+    of_grain.end = at + 1;
+    touched_.push_back({.body = body, .list = list_of_[body]});
+    touched_bodies_.push_back(body);
+  }
 }
 
 }  // namespace softgrain

@@ -1,6 +1,5 @@
 #include "softgrain/contact/block_sweeps.hpp"
 #include "softgrain/contact/nlgs.hpp"
-#include "softgrain/core/parallel.hpp"
 #include "softgrain/rigid/contact_blocks.hpp"
 #include "softgrain/rigid/step.hpp"
 
@@ -22,8 +21,8 @@ class GrainBlocks {
 
   int blocks() const { return narrow_.blocks(); }
   double moved(int block) const { return narrow_.moved(block); }
-  Violation sweep_block(int block, double b, bool measured) {
-    return narrow_.sweep_block(block, b, measured);
+  void sweep_blocks(std::span<const int> open, std::span<Violation> found, double b, bool measured) {
+    narrow_.sweep_blocks(open, found, b, measured);
   }
   void go_ahead_between(double b) {
     narrow_.go_ahead_between(b);
@@ -62,17 +61,28 @@ SolverReport RigidDynamics<Dim>::solve_in_single_precision(RigidContactSystem<Di
   SolverReport report;
   if constexpr (Dim == 2) {
     narrow_.start(
-        particles, contacts, [&](int begin, int end) { prepare(begin, end, dt); }, offset_,
-        solver.relaxation);
+        particles, contacts, [&](int begin, int end) { prepare(begin, end, dt); }, offset_, solver.relaxation,
+        reference.shares);
     NarrowSweeps::System alone(narrow_, particles, contacts, offset_);
     PushedBodies pressed = pressed_walls(dt);
     GrainBlocks grains(narrow_, alone, pressed, contacts, solver.relaxation);
     report = BlockSweeps().solve(grains, solver.velocity_scale, solver);
-    for_each_block(static_cast<int>(contacts.blocks.size()), [&](int k) {
-      narrow_.read_impulses(contacts.blocks[k], contacts.impulse);
-      system.apply_impulses(k, contacts.impulse);
-      overlaps_[k] = overlaps_of(contacts.blocks[k]);
-    });
+    for_each_block(
+        contacts, reference.shares,
+        [&](int k) {
+          narrow_.read_impulses(contacts.blocks[k], contacts.impulse);
+          system.apply_impulses(k, contacts.impulse);
+          overlaps_[k] = overlaps_of(contacts.blocks[k]);
+        },
+        [&](int k, Message& message) {
+          const GrainRange& grain = reference.grains[contacts.blocks[k].list];
+          const auto of_grain = [&](auto& rows) {
+            message(std::span(rows).subspan(grain.begin, grain.end - grain.begin));
+          };
+          of_grain(particles.velocity);
+          of_grain(particles.spin);  // n x (p n) is round-off, not 0
+          message(overlaps_[k]);
+        });
     move_presses(dt);
   }
   return report;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "softgrain/rigid/narrow_rows.hpp"
 
@@ -95,7 +96,7 @@ Violation NarrowSweeps::sweep_block(int k, double ahead, bool measured) {
   Block& block = blocks_[listed_[k]];
   const auto b = static_cast<float>(ahead);
   const int begin = block.bodies.begin, end = block.bodies.end;
-  const bool spins = !block.frictional.eights.empty();
+  const bool spins = block.spins;
   const auto go_ahead = [&](auto* now, auto* start, const auto* last, const auto& add) {
     for (int i = begin; i < end; ++i) {
       const auto at = now[i];
@@ -116,6 +117,26 @@ Violation NarrowSweeps::sweep_block(int k, double ahead, bool measured) {
   if (spins) std::copy(spin_.begin() + begin, spin_.begin() + end, spin_end_.begin() + begin);
   block.turn = sweeps_;
   return violation;
+}
+
+/// What contacts between grains see of a grain.
+void NarrowSweeps::pass_touched(const Block& block, Message& message) {
+  const auto bodies = std::span<const int>(touched_bodies_)
+                          .subspan(block.touched.begin, block.touched.end - block.touched.begin);
+  message.at(bodies, velocity_);
+  if (block.spins) message.at(bodies, spin_);
+}
+
+void NarrowSweeps::sweep_blocks(std::span<const int> open, std::span<Violation> found, double ahead,
+                                bool measured) {
+  shared_for(
+      shares_, static_cast<int>(open.size()), [&](int k) { return listed_[open[k]]; },
+      [&](int k) { found[open[k]] = sweep_block(open[k], ahead, measured); },
+      [&](int k, Message& message) {
+        Block& block = blocks_[listed_[open[k]]];
+        message(found[open[k]]), message(block.turn);
+        pass_touched(block, message);
+      });
 }
 
 void NarrowSweeps::go_ahead_between(double ahead) {
@@ -151,7 +172,7 @@ void NarrowSweeps::end_sweep() {
       continue;
     }
     const float dx = v.x - touched.velocity.x, dy = v.y - touched.velocity.y;
-    const float turned = block.frictional.eights.empty() ? 0 : std::abs(spin_[touched.body] - touched.spin);
+    const float turned = block.spins ? std::abs(spin_[touched.body] - touched.spin) : 0;
     block.moved = std::max(block.moved, 2 * (std::sqrt(dx * dx + dy * dy) + turned));
   }
   ++sweeps_;
@@ -159,7 +180,9 @@ void NarrowSweeps::end_sweep() {
 
 Violation NarrowSweeps::sweep(bool measured) {
   std::vector<Violation> found(listed_.size());
-  parallel_for(blocks(), [&](int k) { found[k] = sweep_block(k, 0, measured); });
+  std::vector<int> all(blocks());
+  std::iota(all.begin(), all.end(), 0);
+  sweep_blocks(all, found, 0, measured);
   Violation violation;
   for (const Violation& of_block : found) violation += of_block;
   return violation += sweep_between(measured);
@@ -244,11 +267,7 @@ void NarrowSweeps::take_contacts(const RigidContacts<2>& contacts, const Contact
     fill(contacts, listed.frictionless, begin, idle, block.frictionless);
     fill(contacts, listed.frictional, begin, idle, block.frictional);
     block.made = listed.made;
-    const bool inside = listed.list != listed_.back();
-    if (inside)
-      take_range(contacts, listed, block);
-    else
-      take_touched(contacts, listed);
+    if (listed.list != listed_.back()) take_range(contacts, listed, block);
   }
   velocity_[idle] = {};
   spin_[idle] = 0;

@@ -21,15 +21,20 @@ class NarrowSweeps {
   /// Starts from the free velocities of the bodies and the impulses of the contacts, which act at once.
   /// `prepare(begin, end)` makes sure of normals, impulses and `offset` (m) [m/s], as from signorini_offset,
   /// of these contacts; omega = `relaxation`.
+  /// Ranks have their shares of the blocks until the next start.
   template <class Prepare>
   void start(const RigidParticles<2>& particles, const RigidContacts<2>& contacts, const Prepare& prepare,
-             std::span<const double> offset, double relaxation) {
+             std::span<const double> offset, double relaxation, const Shares& shares = {}) {
     take_bodies(particles, contacts, relaxation);
-    for_each_block(static_cast<int>(contacts.blocks.size()), [&](int k) {
-      const ContactBlock& block = contacts.blocks[k];
-      prepare(block.begin(), block.end());
-      take_contacts(contacts, block, offset);
-    });
+    shares_ = shares;
+    for_each_block(
+        contacts, shares,
+        [&](int k) {
+          const ContactBlock& block = contacts.blocks[k];
+          prepare(block.begin(), block.end());
+          take_contacts(contacts, block, offset);
+        },
+        [&](int k, Message& message) { pass_touched(blocks_[listed_[k]], message); });
   }
 
   /// One sweep of all blocks. The violation is counted only if `measured`.
@@ -38,7 +43,7 @@ class NarrowSweeps {
   // As a BlockSystem; sweep_between leaves out the contacts that no block sweeps, and end_sweep closes each
   // sweep.
   int blocks() const { return std::max(static_cast<int>(listed_.size()) - 1, 0); }
-  Violation sweep_block(int block, double ahead, bool measured);
+  void sweep_blocks(std::span<const int> open, std::span<Violation> found, double ahead, bool measured);
   void go_ahead_between(double ahead);
   Violation sweep_between(bool measured);
   void end_sweep();
@@ -82,8 +87,11 @@ class NarrowSweeps {
     Batch<Eight> frictionless;
     Batch<FrictionalEight> frictional;
     GrainRange bodies{};  // of a grain
-    int turn = 0;         // the last sweep of it
-    float moved = 0;      // [m/s]
+    bool spins = false;   // has it friction?
+    int touched_made = -1;
+    GrainRange touched{};  // its bodies with contacts between grains, in touched_
+    int turn = 0;          // the last sweep of it
+    float moved = 0;       // [m/s]
   };
   /// A body of a grain with contacts between grains, as it was at the end of the sweep that had its grain's
   /// last turn.
@@ -107,6 +115,8 @@ class NarrowSweeps {
   void turn(const Eight& contact, Floats s_a, Floats s_b, Floats p_t);
   void take_range(const RigidContacts<2>& contacts, const ContactBlock& listed, Block& block);
   void take_touched(const RigidContacts<2>& contacts, const ContactBlock& between);
+  void pass_touched(const Block& block, Message& message);
+  Violation sweep_block(int block, double ahead, bool measured);
   template <bool Ahead, bool Measured>
   void relax(Eight& contact, float b, LaneViolation<Floats>& violation);
   template <bool Ahead, bool Measured>
@@ -122,6 +132,8 @@ class NarrowSweeps {
   std::vector<float> spin_start_, spin_end_;
   std::vector<int> list_of_;  // of bodies; -1: no grain's
   std::vector<Touched> touched_;
+  std::vector<int> touched_bodies_;
+  Shares shares_;
   int bodies_ = 0, sweeps_ = 0;
   float relaxation_ = 1, inertia_ratio_ = 2;
 };

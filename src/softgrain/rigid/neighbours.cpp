@@ -127,10 +127,13 @@ std::vector<double> staleness(const NeighbourReference<Dim>& reference,
   const double limit = 0.9 * reference.skin;
   std::vector<double> stale(grains + 1, 0);
   std::vector<Displacement<Dim>> moved(grains + reference.wall_point.size());
-  parallel_for(grains, [&](int g) {
-    stale[g] = 2 * displacement_of(reference.position, particles, reference.grains[g]).most_about / limit;
-    moved[g] = displacement_of(reference.between, particles, reference.grains[g]);
-  });
+  shared_for(
+      reference.shares, grains,
+      [&](int g) {
+        stale[g] = 2 * displacement_of(reference.position, particles, reference.grains[g]).most_about / limit;
+        moved[g] = displacement_of(reference.between, particles, reference.grains[g]);
+      },
+      [&](int g, Message& message) { message(stale[g]), message(moved[g]); });
   for (std::size_t w = 0; w < reference.wall_point.size(); ++w)
     moved[grains + w].middle = listed_point(particles.walls[w]) - reference.wall_point[w];
   double& between = stale[grains];
@@ -157,6 +160,9 @@ void take_between(NeighbourReference<Dim>& reference, const RigidParticles<Dim>&
 template <int Dim>
 void start_lists(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
   reference.grains = grain_ranges(particles);
+  std::vector<double> weight;
+  for (const GrainRange& grain : reference.grains) weight.push_back(grain.end - grain.begin);
+  if (reference.shared) reference.shares = Shares(weight);
   reference.far = far_share * reference.skin;
   reference.made.assign(reference.grains.size() + 1, ++reference.generation);
 }

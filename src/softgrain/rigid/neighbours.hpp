@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "softgrain/core/shared_loop.hpp"
 #include "softgrain/rigid/contacts.hpp"
 #include "softgrain/rigid/particles.hpp"
 
@@ -29,6 +30,8 @@ struct NeighbourReference {
   int generation = 0;                ///< counts the times when lists were made again
   std::vector<int> made{};  ///< (grains + 1) generation of each list, the last is that between grains
   std::vector<GrainRange> grains{};  ///< all particles, grain by grain
+  bool shared = false;               ///< do ranks share what is done grain by grain?
+  Shares shares{};                   ///< of grains: then who makes the lists inside them, and works on them
 
   /// Grains g < h, in which image, or g and wall h - grains.size(), that may meet before one has gone `far`
   struct Close {

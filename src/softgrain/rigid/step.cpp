@@ -56,6 +56,26 @@ void RigidDynamics<Dim>::rebuild_contacts() {
   replaced_ = std::exchange(contacts, std::move(made));
 }
 
+template <int Dim>
+void RigidDynamics<Dim>::share_grains() {
+  reference.shared =
+      Dim == 2 && options.precision == Precision::single && options.law.activation == Activation::anticipated;
+}
+
+template <int Dim>
+void RigidDynamics<Dim>::gather() {
+  const auto rows_of = [](const ContactBlock& block, auto& rows) {
+    return std::span(rows).subspan(block.begin(), block.end() - block.begin());
+  };
+  for_each_block(
+      contacts, reference.shares, [](int) {},
+      [&](int k, Message& message) {
+        message(rows_of(contacts.blocks[k], contacts.gap));
+        message(rows_of(contacts.blocks[k], contacts.normal));
+        message(rows_of(contacts.blocks[k], contacts.impulse));
+      });
+}
+
 /// Contacts with and without friction are listed apart, so that the list is made again.
 template <int Dim>
 void RigidDynamics<Dim>::set_friction(FrictionRule friction) {

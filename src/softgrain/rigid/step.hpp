@@ -72,6 +72,11 @@ class RigidDynamics {
 
   /// Makes the contacts of renewed lists again from the reference as it is.
   void rebuild_contacts();
+  /// Before the reference is set: ranks share the grains, where sweeps in single precision are all that looks
+  /// at the contacts inside them. Then whoever looks at those gathers them first.
+  void share_grains();
+  /// Gaps, normals and impulses of contacts inside grains, from the ranks that have them (ModelOf::gather).
+  void gather();
   /// From now on, another one between grains or at walls; impulses stay.
   void set_friction(FrictionRule friction);
 

@@ -79,6 +79,7 @@ SoftStepReport ExplicitStep<Dim>::step(double dt) {
     sub_step(rest / count, report);
     rest = count > 1 ? rest - rest / count : 0;
   }
+  if (box.cell.any()) grains.gather();  // the stress of a cell asks for centres of mass after each step
   return report;
 }
 
@@ -158,10 +159,10 @@ void ExplicitStep<Dim>::fly_outline(double dt) {
 template <int Dim>
 void ExplicitStep<Dim>::kick(double dt) {
   std::vector<int> inverted(grains.batches.size(), -1);
-  parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
+  const auto kick_elastic = [&](int b) {
     thread_local WidePlaces<Dim> force;  // of this batch only: it stays in the processor's cache
     BatchOf<Dim>& batch = grains.batches[b];
-    if (batch.topology->rigid()) return kick_rigid(dt, batch, batch_step_[b]);
+    if (batch.topology->rigid()) return;
     if (options.damping_share > 0)
       for (std::size_t i = 0; i < batch.position.size(); ++i)
         batch.position[i] += Wide(options.damping_share * dt) * batch.velocity[i];
@@ -171,11 +172,34 @@ void ExplicitStep<Dim>::kick(double dt) {
     kick_batch(dt, force, batch, batch_step_[b]);
     grains.for_each_vertex(
         batch, [&](int v, int i, int lane) { outline_velocity_[v] = lane_of(batch.velocity[i], lane); });
+  };
+  const int batches = static_cast<int>(grains.batches.size());
+  shared_for(grains.shares, batches, kick_elastic, [&](int b, Message& message) {
+    message(inverted[b]);
+    pass_kicked(b, message);
+  });
+  parallel_for(batches, [&](int b) {
+    if (grains.batches[b].topology->rigid()) kick_rigid(dt, grains.batches[b], batch_step_[b]);
   });
   for (const int grain : inverted)
     if (grain >= 0)
       throw NumericalError(
           fmt::format("a material point of grain {} is turned inside out; use a smaller time step", grain));
+}
+
+/// What contacts and the end of the step need of the grains of a batch.
+template <int Dim>
+void ExplicitStep<Dim>::pass_kicked(int b, Message& message) {
+  BatchOf<Dim>& batch = grains.batches[b];
+  if (batch.topology->rigid()) return;
+  BatchStep& step = batch_step_[b];
+  const auto outline = static_cast<std::size_t>(batch.topology->grid.outline_nodes());
+  step.force.resize(outline), step.velocity.resize(outline);
+  message(step.force), message(step.velocity);
+  message(step.internal), message(step.gravity), message(step.damping), message(step.flow);
+  message(std::span(batch.position).last(outline));
+  for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+    message(std::span(outline_velocity_).subspan(grains.outline_begin(batch.grain[lane]), outline));
 }
 
 template <int Dim>

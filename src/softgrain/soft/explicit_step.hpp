@@ -108,6 +108,7 @@ class ExplicitStep {
   void find_contacts(double dt);
   void fly_outline(double dt);
   void kick(double dt);
+  void pass_kicked(int b, Message& message);
   void kick_batch(double dt, const WidePlaces<Dim>& force, BatchOf<Dim>& batch, BatchStep& step) const;
   void drift_batch(double dt, BatchOf<Dim>& batch, BatchStep& step) const;
   void drift_outline(double dt);

@@ -36,7 +36,7 @@ void ImplicitDynamics::balance_momentum(double dt) {
   for (const Wall<2>& wall : box.walls) fastest = std::max(fastest, turn_over_walls * norm(wall.velocity));
   fastest = std::max(fastest, turn_over_walls * std::sqrt(contract(box.cell.rate, box.cell.rate)));
   std::vector<Wide> given(batches());  // kinetic energy
-  parallel_for(batches(), [&](int b) {
+  const auto balance = [&](int b) {
     GrainBatch& batch = grains.batches[b];
     WideVectors outer(batch.position.size());
     grains.scatter_outline(force, batch, outer);
@@ -80,7 +80,8 @@ void ImplicitDynamics::balance_momentum(double dt) {
       kinetic += 0.5 * grains.node_mass(batch, i) * dot(v, v);
     }
     given[b] = kinetic;
-  });
+  };
+  share(balance, [&](int b, Message& message) { message(given[b]), message(grains.batches[b].velocity); });
   for (int b = 0; b < batches(); ++b)
     for (int lane = 0; lane < Wide::size && grains.batches[b].grain[lane] >= 0; ++lane)
       work.inertia -= given[b][lane];
@@ -91,7 +92,7 @@ void ImplicitDynamics::add_work() {
     Wide internal = 0.0, inertia = 0.0, gravity = 0.0, damping = 0.0;
   };
   std::vector<Share> shares(grains.batches.size());
-  parallel_for(batches(), [&](int b) {
+  const auto add_up = [&](int b) {
     const GrainBatch& batch = grains.batches[b];
     auto& [internal, inertia, gravity, damping] = shares[b];
     for (int i = 0; i < batch.topology->grid.nodes(); ++i) {
@@ -105,6 +106,9 @@ void ImplicitDynamics::add_work() {
       gravity += m * (options.gravity[0] * moved[0] + options.gravity[1] * moved[1]);
     }
     if (batch.topology->rigid()) inertia = inertia_work_of_rigid(b);
+  };
+  share(add_up, [&](int b, Message& message) {
+    message(shares[b]), message(held_[b].couple), message(held_[b].wanted);
   });
   for (std::size_t b = 0; b < grains.batches.size(); ++b)
     for (int lane = 0; lane < Wide::size && grains.batches[b].grain[lane] >= 0; ++lane) {

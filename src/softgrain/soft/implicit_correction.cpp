@@ -40,7 +40,7 @@ Wide secant(const WideVectors& f, const WideVectors& f_before) {
 /// Solves A f = r + H p/dt and moves x by f and what the iterations before add to it.
 ImplicitDynamics::Imbalance ImplicitDynamics::correct(bool first, bool same_matrix) {
   const std::vector<Vec<2>> force = contact_forces(grains, contacts, felt(), outline_.dt);
-  parallel_for(batches(), [&](int b) {
+  own_for(grains.shares, batches(), [&](int b) {
     const GrainBatch& batch = grains.batches[b];
     WideVectors& f = force_[b];
     f.assign(f.size(), {});
@@ -64,7 +64,7 @@ ImplicitDynamics::Imbalance ImplicitDynamics::correct(bool first, bool same_matr
 /// Largest |f| of a node [m]; remembers its grain.
 double ImplicitDynamics::largest_correction_of_grains() {
   std::vector<std::pair<double, int>> largest(batches());  // |f|^2 and the grain where it is
-  parallel_for(batches(), [&](int b) {
+  const auto look = [&](int b) {
     const GrainBatch& batch = grains.batches[b];
     Wide most = 0.0;
     for (const Vec<2, Wide>& of_node : force_[b]) {
@@ -73,7 +73,8 @@ double ImplicitDynamics::largest_correction_of_grains() {
     }
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
       if (!(most[lane] <= largest[b].first)) largest[b] = {most[lane], batch.grain[lane]};
-  });
+  };
+  share(look, [&](int b, Message& message) { message(largest[b]); });
   double most = 0;
   for (const auto& [square, grain] : largest)
     if (!(square <= most)) most = square, failed_grain_ = grain;
@@ -83,11 +84,11 @@ double ImplicitDynamics::largest_correction_of_grains() {
 /// What A has more than the tangent, (M (1/t^2 - 1/dt^2) + c p/l) f, summed over a grain: the force that is
 /// not balanced yet, in units of the mean contact force of a grain or of the least that counts, whichever is
 /// more. The largest of all grains.
-double ImplicitDynamics::unbalanced_force(std::span<const Vec<2>> contact_force) const {
+double ImplicitDynamics::unbalanced_force(std::span<const Vec<2>> contact_force) {
   const double t = step_of_matrix(outline_.dt), dt = outline_.dt;
   const Wide rate = 1 / (t * t) - 1 / (dt * dt);
   std::vector<double> largest(batches());
-  parallel_for(batches(), [&](int b) {
+  const auto look = [&](int b) {
     const GrainBatch& batch = grains.batches[b];
     WideVectors extra(force_[b].size());
     grains.scatter_outline(proximal_, batch, extra);
@@ -97,7 +98,8 @@ double ImplicitDynamics::unbalanced_force(std::span<const Vec<2>> contact_force)
     const Wide square = dot(sum, sum);
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
       if (!(square[lane] <= largest[b])) largest[b] = square[lane];
-  });
+  };
+  share(look, [&](int b, Message& message) { message(largest[b]); });
   double scale = 0;
   for (const Vec<2>& f : contact_force) scale += norm(f) / grains.size();
   return std::sqrt(*std::max_element(largest.begin(), largest.end())) / std::max(scale, least_contact_force_);
@@ -119,7 +121,7 @@ double ImplicitDynamics::mean_contact_force(double dt) const {
 /// goes the same share of the way in every iteration. The last iteration goes by f, as does the first one of
 /// a matrix.
 void ImplicitDynamics::follow_secant(bool accelerated) {
-  parallel_for(batches(), [&](int b) {
+  const auto follow = [&](int b) {
     const WideVectors& f = force_[b];
     correction_[b].resize(f.size());
     moved_[b].resize(f.size());
@@ -130,7 +132,8 @@ void ImplicitDynamics::follow_secant(bool accelerated) {
     }
     correction_[b] = f;
     keep_rigid(b);
-  });
+  };
+  share(follow, [&](int b, Message& message) { message(grains.batches[b].position); });
 }
 
 /// Nesterov's momentum, for each grain by itself, and from anew where it points against f (not where A is
@@ -140,7 +143,7 @@ void ImplicitDynamics::follow_secant(bool accelerated) {
 /// Unlike a secant it also speeds up modes that grow, in which grains leave an unstable place.
 /// The last iteration goes by f.
 void ImplicitDynamics::follow_momentum(bool first, bool accelerated) {
-  parallel_for(batches(), [&](int b) {
+  const auto follow = [&](int b) {
     const WideVectors& f = force_[b];
     WideVectors& ahead = moved_[b];  // y_k - x_k
     if (first) {
@@ -160,7 +163,8 @@ void ImplicitDynamics::follow_momentum(bool first, bool accelerated) {
       grains.batches[b].position[i] += f[i] + ahead[i];
     }
     keep_rigid(b);
-  });
+  };
+  share(follow, [&](int b, Message& message) { message(grains.batches[b].position); });
 }
 
 }  // namespace softgrain

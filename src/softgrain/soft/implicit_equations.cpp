@@ -25,7 +25,7 @@ ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, S
   const Precision precision =
       t <= options.single_precision_steps * explicit_step_ ? Precision::single : Precision::full;
   std::vector<int> failed(batches(), -1);
-  parallel_for(batches(), [&](int b) {
+  const auto factor_batch = [&](int b) {
     const GrainBatch& batch = grains.batches[b];
     if (batch.topology->rigid()) return;  // see solve_rigid
     BatchedCholesky& A = matrix_[b];
@@ -41,6 +41,10 @@ ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, S
     if (failed[b] >= 0) return;
     A.kept_inverse(compliance_[b]);
     hold_in_compliance(b);
+  };
+  share(factor_batch, [&](int b, Message& message) {
+    message(failed[b]);
+    if (!grains.batches[b].topology->rigid()) message(compliance_[b]);
   });
   return none_failed(failed) ? Failure::none : Failure::indefinite_matrix;
 }
@@ -69,13 +73,19 @@ int ImplicitDynamics::solve_elastic(int b, double dt) {
 ImplicitDynamics::Failure ImplicitDynamics::residual(double dt) {
   outline_increment_.assign(grains.outline_size(), {});
   std::vector<int> failed(batches(), -1);
+  share(
+      [&](int b) {
+        const GrainBatch& batch = grains.batches[b];
+        kept_[b].resize(batch.topology->grid.outline_nodes());
+        if (!batch.topology->rigid()) failed[b] = solve_elastic(b, dt);
+      },
+      [&](int b, Message& message) {
+        kept_[b].resize(grains.batches[b].topology->grid.outline_nodes());
+        message(failed[b]), message(kept_[b]);
+      });
   parallel_for(batches(), [&](int b) {
     const GrainBatch& batch = grains.batches[b];
-    kept_[b].resize(batch.topology->grid.outline_nodes());
-    if (batch.topology->rigid())
-      solve_rigid(b, dt);
-    else
-      failed[b] = solve_elastic(b, dt);
+    if (batch.topology->rigid()) solve_rigid(b, dt);
     if (failed[b] >= 0) return;
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
       for (int v = 0; v < batch.topology->grid.outline_nodes(); ++v)

@@ -210,7 +210,8 @@ double ImplicitDynamics::find_depth() {
 void ImplicitDynamics::flow(double dt) {
   if (!grains.has_history()) return;
   std::vector<FlowOfStep> flows(grains.batches.size());
-  parallel_for(batches(), [&](int b) { flows[b] = advance_history(grains, grains.batches[b], dt); });
+  share([&](int b) { flows[b] = advance_history(grains, grains.batches[b], dt); },
+        [&](int b, Message& message) { message(flows[b]); });
   last_flow = sum_of(grains, flows);
   work.flow += last_flow.dissipated;
 }
@@ -218,13 +219,14 @@ void ImplicitDynamics::flow(double dt) {
 /// v = (x - x_n)/dt; the walls' impulses; the work done; the contacts as they are at the end.
 ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& report) {
   std::vector<int> failed(batches(), -1);
-  parallel_for(batches(), [&](int b) {
+  const auto end_batch = [&](int b) {
     GrainBatch& batch = grains.batches[b];
     failed[b] = batch.grain_in(internal_force(grains, batch, force_[b], dt));
     if (batch.topology->rigid()) return end_rigid(b, dt);
     for (std::size_t i = 0; i < batch.position.size(); ++i)
       batch.velocity[i] = Wide(1 / dt) * (batch.position[i] - start_[b][i]);
-  });
+  };
+  share(end_batch, [&](int b, Message& message) { message(failed[b]); });
   if (!none_failed(failed)) return Failure::inverted_point;
   failed_grain_ = grains.runaway_grain(dt);
   if (failed_grain_ >= 0) return Failure::too_far;

@@ -162,7 +162,7 @@ class ImplicitDynamics {
   bool solve_contacts(double dt, SoftStepReport& report);
   Imbalance correct(bool first, bool same_matrix);
   double largest_correction_of_grains();
-  double unbalanced_force(std::span<const Vec<2>> contact_force) const;
+  double unbalanced_force(std::span<const Vec<2>> contact_force);
   void follow_secant(bool accelerated);
   void follow_momentum(bool first, bool accelerated);
   double mean_contact_force(double dt) const;  // sum of all, over the number of grains [N/m]
@@ -197,6 +197,11 @@ class ImplicitDynamics {
   std::vector<OutlineCompliance> compliance_;
   ElasticScratch scratch_;
   int batches() const { return static_cast<int>(grains.batches.size()); }
+  /// of_batch(b) for each batch on its rank, see shared_for.
+  template <class Work, class Result>
+  void share(const Work& of_batch, const Result& result) {
+    shared_for(grains.shares, batches(), of_batch, result);
+  }
   bool none_failed(std::span<const int> grain_of_batch);
 
   std::vector<WideVectors> start_, velocity_start_, half_solved_, force_, kept_;  // per batch

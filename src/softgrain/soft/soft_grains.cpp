@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/core/parallel.hpp"
 #include "softgrain/soft/history.hpp"
 
 namespace softgrain {
@@ -74,6 +73,18 @@ GrainsOf<Dim>::GrainsOf(std::vector<PlacementOf<Dim>> grains, std::vector<GrainM
       }
     }
   }
+  std::vector<double> weight;
+  for (const Batch& batch : batches) weight.push_back(static_cast<double>(batch.topology->points.size()));
+  shares = Shares(weight);
+}
+
+template <int Dim>
+void GrainsOf<Dim>::gather() {
+  shared_for(
+      shares, static_cast<int>(batches.size()), [](int) {},
+      [&](int b, Message& message) {
+        message(batches[b].position), message(batches[b].velocity), message(batches[b].history);
+      });
 }
 
 template <int Dim>
@@ -191,7 +202,7 @@ double GrainsOf<Dim>::undeformed_area() const {
 template <int Dim>
 int GrainsOf<Dim>::runaway_grain(double dt) const {
   std::vector<int> runaway(batches.size(), -1);
-  parallel_for(static_cast<int>(batches.size()), [&](int b) {
+  const auto look = [&](int b) {
     const Batch& batch = batches[b];
     Wide sum = 0.0;
     for (const Vec<Dim, Wide>& v : batch.velocity) sum += dot(v, v);
@@ -200,7 +211,9 @@ int GrainsOf<Dim>::runaway_grain(double dt) const {
       if (batch.grain[lane] >= 0 &&
           !(dt * std::sqrt(sum[lane] / nodes) < largest_motion * batch.radius[lane]))
         runaway[b] = batch.grain[lane];
-  });
+  };
+  shared_for(shares, static_cast<int>(batches.size()), look,
+             [&](int b, Message& message) { message(runaway[b]); });
   for (const int grain : runaway)
     if (grain >= 0) return grain;
   return -1;

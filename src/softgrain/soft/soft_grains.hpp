@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "softgrain/core/shared_loop.hpp"
 #include "softgrain/geometry/wall.hpp"
 #include "softgrain/material/any_law.hpp"
 #include "softgrain/math/tensor.hpp"
@@ -166,7 +167,12 @@ class GrainsOf {
   /// number; -1 if none does.
   int runaway_grain(double dt) const;
 
+  /// On all ranks at once: each gets positions, velocities and history of all batches from the ranks that
+  /// have them (ModelOf::gather).
+  void gather();
+
   std::vector<Batch> batches;
+  Shares shares;  ///< of batches: on which rank each is worked on
 
  private:
   static constexpr double largest_motion = 0.5;

@@ -138,13 +138,15 @@ class Lanczos {
 
 double longest_stable_step(const SolidGrains& grains, double damping_share) {
   std::vector<double> largest(grains.batches.size());
-  parallel_for(static_cast<int>(largest.size()), [&](int b) {
+  const auto look = [&](int b) {
     const SolidBatch& batch = grains.batches[static_cast<std::size_t>(b)];
     if (batch.topology->rigid()) return;
     int lanes = 0;
     while (lanes < Wide::size && batch.grain[static_cast<std::size_t>(lanes)] >= 0) ++lanes;
     largest[static_cast<std::size_t>(b)] = Lanczos(grains, batch).largest(lanes);
-  });
+  };
+  shared_for(grains.shares, static_cast<int>(largest.size()), look,
+             [&](int b, Message& message) { message(largest[static_cast<std::size_t>(b)]); });
   return 2 / std::sqrt((1 + 2 * damping_share) * *std::max_element(largest.begin(), largest.end()));
 }
 

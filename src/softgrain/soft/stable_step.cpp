@@ -109,8 +109,10 @@ double stable_time_step(const SoftGrains& grains, double safety) {
 
 double longest_stable_step(const SoftGrains& grains, double damping_share) {
   std::vector<double> largest(grains.batches.size());
-  parallel_for(static_cast<int>(largest.size()),
-               [&](int b) { largest[b] = largest_square_frequency(grains, grains.batches[b]); });
+  shared_for(
+      grains.shares, static_cast<int>(largest.size()),
+      [&](int b) { largest[b] = largest_square_frequency(grains, grains.batches[b]); },
+      [&](int b, Message& message) { message(largest[b]); });
   return 2 / std::sqrt((1 + 2 * damping_share) * *std::max_element(largest.begin(), largest.end()));
 }
 

@@ -24,6 +24,9 @@ class RowOfMasses {
         turn_(blocks, 0) {}
 
   int blocks() const { return static_cast<int>(turn_.size()); }
+  void sweep_blocks(std::span<const int> open, std::span<Violation> found, double b, bool measured) {
+    for (const int k : open) found[k] = sweep_block(k, b, measured);
+  }
   Violation sweep_block(int k, double b, bool measured) {
     ++turns[k];
     turn_[k] = sweep_;

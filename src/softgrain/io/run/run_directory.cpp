@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "softgrain/core/communicator.hpp"
 #include "softgrain/core/error.hpp"
 
 namespace softgrain {
@@ -86,6 +87,16 @@ std::vector<SnapshotFile> list_snapshots(const RunPaths& paths) {
   std::sort(snapshots.begin(), snapshots.end(),
             [](const SnapshotFile& a, const SnapshotFile& b) { return a.step < b.step; });
   return snapshots;
+}
+
+std::string snapshot_label(const fs::path& snapshot) { return snapshot.stem().string().substr(1); }
+
+std::unique_ptr<RunDirectory> RunDirectory::take(const fs::path& root, IfNotEmpty if_not_empty) {
+  std::unique_ptr<RunDirectory> directory;
+  together(communicator().rank() == 0,
+           [&] { directory = std::make_unique<RunDirectory>(root, if_not_empty); });
+  if (directory == nullptr) directory.reset(new RunDirectory(root));
+  return directory;
 }
 
 // By way of another constructor, so that the destructor tidies up after a refusal.

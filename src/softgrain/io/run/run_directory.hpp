@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct SnapshotFile {
 /// The restart points of a run, oldest first. Unchecked.
 std::vector<SnapshotFile> list_snapshots(const RunPaths& paths);
 
+/// "000123" for snap/s000123.h5.
+std::string snapshot_label(const std::filesystem::path& snapshot);
+
 /// A run's directory, made when missing, and ours alone until this object goes: a second run is refused
 /// (UsageError, naming the other's process). Where no run was begun (no run.json), nothing of it stays. On a
 /// file system without locks (flock) the directory is taken all the same, and caution() says so.
@@ -39,6 +43,8 @@ class RunDirectory {
  public:
   enum class IfNotEmpty { refuse, keep };
   RunDirectory(const std::filesystem::path& root, IfNotEmpty if_not_empty);
+  /// Of several ranks the first one takes it, for all.
+  static std::unique_ptr<RunDirectory> take(const std::filesystem::path& root, IfNotEmpty if_not_empty);
   RunDirectory(const RunDirectory&) = delete;
   RunDirectory& operator=(const RunDirectory&) = delete;
   ~RunDirectory();

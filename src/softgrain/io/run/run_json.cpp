@@ -10,6 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "softgrain/core/communicator.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/core/version.hpp"
@@ -62,6 +63,22 @@ Json libraries() {
           {"xxhash", fmt::format("{}.{}.{}", XXH_VERSION_MAJOR, XXH_VERSION_MINOR, XXH_VERSION_RELEASE)}};
 }
 
+/// What is neither shared nor exchanged, all ranks do alike.
+Json json_of(const RankRecord& record) {
+  const Communicator& all = communicator();
+  const SharingAccount& account = all.account;
+  const double shared = record.cpu_shared_mean * all.ranks();
+  return {{"count", all.ranks()},
+          {"hosts", all.hosts()},
+          {"exchanges", account.exchanges},
+          {"bytes_sent_by_first", account.bytes_sent},
+          {"bytes_received_by_first", account.bytes_received},
+          {"cpu_shared", shared},
+          {"cpu_exchanges", record.cpu_exchanges},
+          {"cpu_alike", record.cpu_all - shared - record.cpu_exchanges},
+          {"imbalance", record.cpu_shared_mean > 0 ? record.cpu_shared_max / record.cpu_shared_mean : 1}};
+}
+
 Json machine() {
   constexpr std::int64_t kibibyte = 1024;
   return {{"host", host_name()},
@@ -111,7 +128,7 @@ std::string encode_run_record(const RunRecord& record) {
   const Verdict verdict = verdict_of(report, record.path);
   Json origins = Json::array();
   for (const RunOrigin& origin : record.origins) origins.push_back(json_of(origin));
-  const Json json = {
+  Json json = {
       {"format", format_name},
       {"version", format_version},
       {"state", record.state},
@@ -144,6 +161,7 @@ std::string encode_run_record(const RunRecord& record) {
       {"libraries", libraries()},
       {"machine", machine()},
   };
+  if (communicator().ranks() > 1) json["ranks"] = json_of(record.ranks);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -16,6 +16,13 @@ struct RunOrigin {
   std::vector<std::string> command;  ///< that began that run
 };
 
+/// How ranks shared a run: of this process and those beside it, not of earlier parts.
+struct RankRecord {
+  double cpu_shared_mean = 0, cpu_shared_max = 0;  ///< CPU time of a rank in shared loops [s]
+  double cpu_exchanges = 0;                        ///< of all ranks, waiting included [s]
+  double cpu_all = 0;                              ///< of all ranks together [s]
+};
+
 /// What run.json tells about a run: where it came from, how far it is, and what it reached.
 struct RunRecord {
   std::string state = "running";     ///< running, done, stopped (can be resumed), failed
@@ -31,6 +38,7 @@ struct RunRecord {
   double wall_seconds = 0;  ///< of all resumed parts together
   double cpu_seconds = 0;
   std::vector<RunOrigin> origins;  ///< that it was begun from, the newest first; none: from its case
+  RankRecord ranks;
   RunReport report;
   LoadingOutcome path;  ///< of a run that is done
 };

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "softgrain/core/communicator.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/estimate.hpp"
-#include "softgrain/io/case/case_extension.hpp"
-#include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/run/verdict.hpp"
 #include "softgrain/observe/columns.hpp"
 
@@ -17,33 +16,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// How many of `count` even shares of the run are over.
-int shares_done(const AnySimulation& simulation, int count) {
-  constexpr double rounding = 1e-9;
-  return static_cast<int>(std::floor(simulation.progress() * count + rounding));
-}
+/// In the place of a signal: no signal's number.
+constexpr int time_is_over = 1000;
 
 /// "s000123.h5", wide enough for the last step.
 std::string snapshot_name(std::int64_t step, std::int64_t last_step) {
   const std::size_t width = std::max<std::size_t>(6, std::to_string(last_step).size());
   return fmt::format("s{:0{}}.h5", step, width);
-}
-
-/// "000123" for snap/s000123.h5.
-std::string label_of(const fs::path& snapshot) { return snapshot.stem().string().substr(1); }
-
-/// The frames of ParaView's collection that belong to earlier snapshots.
-std::vector<Frame> frames_before(std::int64_t step, const RunPaths& paths) {
-  std::vector<Frame> frames;
-  for (const SnapshotFile& file : list_snapshots(paths)) {
-    if (file.step >= step) break;
-    try {
-      frames.push_back({snapshot_time(file.path), label_of(file.path)});
-    } catch (const IoError&) {
-      // A damaged one: `softgrain verify` tells.
-    }
-  }
-  return frames;
 }
 
 /// Over the steps since the last row.
@@ -73,121 +52,99 @@ double RunRecorder::wall_seconds() const {
   return wall_before_ + elapsed.count();
 }
 
-bool RunRecorder::stop_wanted() const {
-  return signals_.stop_signal() != 0 || wall_seconds() - wall_before_ >= request_.stop_after;
+int RunRecorder::shares_done(const AnySimulation& simulation, int count) {
+  constexpr double rounding = 1e-9;
+  return static_cast<int>(std::floor(simulation.progress() * count + rounding));
+}
+
+/// 0: go on.
+int RunRecorder::stop_wanted() const {
+  if (const int signal = signals_.stop_signal(); signal != 0) return signal;
+  return wall_seconds() - wall_before_ >= request_.stop_after ? time_is_over : 0;
+}
+
+/// On all ranks.
+void RunRecorder::add_up_ranks() {
+  Communicator& all = communicator();
+  const SharingAccount account = all.account;
+  const double mean = all.sum(account.cpu_shared) / all.ranks();
+  record_.ranks = {
+      .cpu_shared_mean = mean,
+      .cpu_shared_max = 1e-6 * static_cast<double>(all.largest(std::llround(1e6 * account.cpu_shared))),
+      .cpu_exchanges = all.sum(account.cpu_exchanges),
+      .cpu_all = all.sum(cpu_seconds())};
+}
+
+/// An error there is one of all ranks.
+void RunRecorder::on_first_rank(const std::function<void()>& work) const {
+  together(communicator().rank() == 0, work);
 }
 
 void RunRecorder::log(const std::string& text) {
+  if (communicator().rank() != 0) return;
   if (!log_) log_.emplace(paths_.log_file());
   log_->append(fmt::format("{} {}\n", utc_now(), text));
   if (request_.verbose) progress_.message(text);
 }
 
 void RunRecorder::begin(AnySimulation& simulation) {
-  write_record(simulation);  // first of all: run.json is what makes this directory a run's
-  fs::create_directories(paths_.snapshot_folder());
-  if (request_.the_case.output.vtk) fs::create_directories(paths_.vtk_folder());
-  log(fmt::format("begin: {} steps planned", simulation.steps_planned()));
-  write_file(paths_.case_file(), request_.case_text);
-  series_.emplace(paths_.series_file());
-  write_row(simulation);
-  save(simulation);
-}
-
-Snapshot RunRecorder::newest_intact_snapshot() {
-  auto files = list_snapshots(paths_);
-  std::vector<fs::path> damaged;
-  for (; !files.empty(); files.pop_back()) {
-    try {
-      Snapshot snapshot = read_snapshot(files.back().path);
-      last_snapshot_ = files.back().path;
-      for (const fs::path& path : damaged) fs::rename(path, path.string() + ".damaged");
-      return snapshot;
-    } catch (const IoError& error) {
-      const auto message = fmt::format("skipped a snapshot: {}", error.what());
-      log(message);
-      if (!request_.verbose) progress_.message(message);
-      damaged.push_back(files.back().path);
-    }
-  }
-  throw IoError(
-      fmt::format("{}: none of {} snapshots is intact", paths_.snapshot_folder().string(), damaged.size()));
-}
-
-/// The last step before an end is cut to end there. A run that goes further begins before it, and so has the
-/// bits of one that had the later end from the start.
-void RunRecorder::drop_old_end() {
-  const auto files = list_snapshots(paths_);
-  if (files.size() < 2 || !fs::exists(paths_.run_file())) return;
-  const RunRecord before = read_run_record(paths_.run_file());
-  if (before.state == "done" && before.step == files.back().step) fs::remove(files.back().path);
-}
-
-RunReport RunRecorder::resume(AnySimulation& simulation) {
-  const bool same_case =
-      !fs::exists(paths_.case_file()) || read_file(paths_.case_file()) == request_.case_text;
-  if (!same_case) drop_old_end();
-  const Snapshot snapshot = newest_intact_snapshot();
-  if (snapshot.case_text != request_.case_text) {
-    const Case begun = parse_case(snapshot.case_text, last_snapshot_.string());
-    const std::string why = why_no_extension(begun, request_.the_case);
-    require(why.empty(), "{} is not the case that the run was begun with: {}", paths_.case_file().string(),
-            why);
-  }
-  simulation.restore(snapshot.checkpoint);
-  if (fs::exists(paths_.run_file())) {
-    const RunRecord before = read_run_record(paths_.run_file());
-    record_.command = before.command;
-    record_.origins = before.origins;
-    record_.started = before.started;
-    record_.resumes = before.resumes + 1;
-  }
-  record_.report = snapshot.report;
-  sums_ = snapshot.sums;
-  wall_before_ = snapshot.wall_seconds;
-  cpu_before_ = snapshot.cpu_seconds;
-  rows_due_ = shares_done(simulation, request_.the_case.output.samples);
-  snapshots_due_ = shares_done(simulation, request_.the_case.output.snapshots);
-  rewind_series(paths_.series_file(), snapshot.checkpoint.step);
-  series_.emplace(paths_.series_file());
-  last_row_ = read_last_row(paths_.series_file()).value_or(std::vector<Quantity>{});
-  log(fmt::format("resume at step {} from {}", snapshot.checkpoint.step, last_snapshot_.string()));
-  frames_ = frames_before(snapshot.checkpoint.step, paths_);
-  if (request_.the_case.output.vtk) fs::create_directories(paths_.vtk_folder());
-  if (!same_case || !fs::exists(paths_.case_file())) write_file(paths_.case_file(), request_.case_text);
-  save_scene(simulation, snapshot.scene);
-  write_record(simulation);
-  return snapshot.report;
+  add_up_ranks();
+  on_first_rank([&] {
+    write_record(simulation);  // first of all: run.json is what makes this directory a run's
+    fs::create_directories(paths_.snapshot_folder());
+    if (request_.the_case.output.vtk) fs::create_directories(paths_.vtk_folder());
+    log(fmt::format("begin: {} steps planned", simulation.steps_planned()));
+    write_file(paths_.case_file(), request_.case_text);
+    series_.emplace(paths_.series_file());
+  });
+  keep(simulation, true, true);
 }
 
 bool RunRecorder::after_step(AnySimulation& simulation, const StepReport& step, RunReport& run) {
   record_.report = run;
   sums_.add(step);
   if (!step.converged && run.steps - run.steps_converged == 1)
-    log(fmt::format(
-        "warning: the solver did not converge in step {} (worst residual {:.1e}, limit {:.1e}); further "
-        "steps are only counted",
-        simulation.steps_done(), step.residual_max, step.residual_limit));
+    on_first_rank([&] {
+      log(fmt::format(
+          "warning: the solver did not converge in step {} (worst residual {:.1e}, limit {:.1e}); further "
+          "steps are only counted",
+          simulation.steps_done(), step.residual_max, step.residual_limit));
+    });
   const bool last = simulation.finished();
-  const bool stop = !last && stop_wanted();
-  if (last || shares_done(simulation, request_.the_case.output.samples) > rows_due_) write_row(simulation);
-  const bool snapshot_due = simulation.at_turning_point() ||
-                            shares_done(simulation, request_.the_case.output.snapshots) > snapshots_due_;
-  if (signals_.take_snapshot_request() || last || stop || snapshot_due) save(simulation);
+  // what one rank is asked for, all do
+  const int asked = 2 * (last ? 0 : stop_wanted()) + (signals_.take_snapshot_request() ? 1 : 0);
+  const auto wanted = static_cast<int>(communicator().largest(asked));
+  stop_ = wanted / 2;
+  const bool row = last || shares_done(simulation, request_.the_case.output.samples) > rows_due_;
+  const bool snapshot = wanted > 0 || last || simulation.at_turning_point() ||
+                        shares_done(simulation, request_.the_case.output.snapshots) > snapshots_due_;
+  if (row || snapshot) keep(simulation, row, snapshot);
   run.energy = record_.report.energy;
   progress_.update(simulation.progress(), last_row_);
-  return !stop;
+  return stop_ == 0;
+}
+
+void RunRecorder::keep(AnySimulation& simulation, bool row, bool snapshot) {
+  simulation.gather();
+  if (row) {
+    on_first_rank([&] { write_row(simulation); });
+    simulation.begin_row();
+    sums_ = {};
+    rows_due_ = shares_done(simulation, request_.the_case.output.samples);
+  }
+  if (snapshot) {
+    add_up_ranks();
+    on_first_rank([&] { save(simulation); });
+    snapshots_due_ = shares_done(simulation, request_.the_case.output.snapshots);
+  }
 }
 
 void RunRecorder::write_row(AnySimulation& simulation) {
   Observation now = simulation.observe();
-  simulation.begin_row();
   now.means = means_of(sums_, wall_seconds());
   record_.report.energy.add(now.energies);
   last_row_ = row_of(now);
   series_->write_row(last_row_);
-  sums_ = {};
-  rows_due_ = shares_done(simulation, request_.the_case.output.samples);
 }
 
 void RunRecorder::save(const AnySimulation& simulation) {
@@ -201,9 +158,8 @@ void RunRecorder::save(const AnySimulation& simulation) {
                         .report = record_.report,
                         .sums = sums_,
                         .wall_seconds = wall_seconds(),
-                        .cpu_seconds = cpu_before_ + cpu_seconds()});
+                        .cpu_seconds = cpu_before_ + record_.ranks.cpu_all});
   last_snapshot_ = path;
-  snapshots_due_ = shares_done(simulation, request_.the_case.output.snapshots);
   save_scene(simulation, scene);
   log(fmt::format("snapshot {} at {:.1f} %", path.filename().string(), 100 * simulation.progress()));
   write_record(simulation);
@@ -211,7 +167,7 @@ void RunRecorder::save(const AnySimulation& simulation) {
 
 void RunRecorder::save_scene(const AnySimulation& simulation, const Scene& scene) {
   if (!request_.the_case.output.vtk) return;
-  const std::string label = label_of(last_snapshot_);
+  const std::string label = snapshot_label(last_snapshot_);
   write_scene(paths_.vtk_folder(), label, scene);
   frames_.push_back({simulation.time(), label});
   write_file(paths_.collection_file(),
@@ -225,12 +181,19 @@ void RunRecorder::write_record(const AnySimulation& simulation) {
   record_.time = simulation.time();
   record_.progress = simulation.progress();
   record_.wall_seconds = wall_seconds();
-  record_.cpu_seconds = cpu_before_ + cpu_seconds();
+  record_.cpu_seconds = cpu_before_ + record_.ranks.cpu_all;
   write_file(paths_.run_file(), encode_run_record(record_));
 }
 
 int RunRecorder::end(const AnySimulation& simulation) {
-  const int signal = signals_.stop_signal();
+  int exit_code = 0;
+  add_up_ranks();
+  on_first_rank([&] { exit_code = write_end(simulation); });
+  return static_cast<int>(communicator().largest(exit_code));
+}
+
+int RunRecorder::write_end(const AnySimulation& simulation) {
+  const int signal = stop_ == time_is_over ? 0 : stop_;
   const bool done = simulation.finished();
   record_.state = done ? "done" : "stopped";
   record_.message = done ? simulation.early_end() : signal != 0 ? signal_name(signal) : "time limit";
@@ -244,6 +207,7 @@ int RunRecorder::end(const AnySimulation& simulation) {
 }
 
 void RunRecorder::fail(const std::string& message) {
+  if (communicator().rank() != 0) return;
   record_.state = "failed";
   record_.message = message;
   record_.wall_seconds = wall_seconds();
@@ -257,8 +221,12 @@ void RunRecorder::fail(const std::string& message) {
 
 RunOutcome record_run(AnySimulation& simulation, const RunDirectory& directory, const RunRequest& request,
                       Progress& progress, SignalWatch& signals) {
-  const bool resuming = request.resume && !list_snapshots(directory.paths()).empty();
-  if (!resuming) directory.clear();
+  bool has_snapshots = false;
+  together(communicator().rank() == 0, [&] {
+    has_snapshots = request.resume && !list_snapshots(directory.paths()).empty();
+    if (!has_snapshots) directory.clear();
+  });
+  const bool resuming = communicator().largest(has_snapshots ? 1 : 0) != 0;
   signals.defer();
   RunRecorder recorder(directory.paths(), request, progress, signals);
   if (resuming) recorder.resume(simulation);  // outside: a run that cannot be resumed stays as it was

@@ -1,5 +1,6 @@
 #pragma once
 #include <chrono>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -28,10 +29,10 @@ struct RunRequest {
   bool verbose = false;                                         ///< the log goes to stderr too
 };
 
-/// Fills a run's directory while the run goes. What is written depends on the simulation's progress alone, so
-/// that a resumed run writes the same: a row of series.csv whenever floor(progress * samples) grows, a
-/// snapshot whenever floor(progress * snapshots) grows or the load turns, and both for the first and the last
-/// state.
+/// Fills a run's directory while the run goes; of several ranks the first one does. What is written depends
+/// on the simulation's progress alone, so that a resumed run writes the same: a row of series.csv whenever
+/// floor(progress * samples) grows, a snapshot whenever floor(progress * snapshots) grows or the load turns,
+/// and both for the first and the last state.
 class RunRecorder final : public Recorder {
  public:
   RunRecorder(const RunPaths& paths, RunRequest request, Progress& progress, SignalWatch& signals);
@@ -57,9 +58,18 @@ class RunRecorder final : public Recorder {
 
  private:
   double wall_seconds() const;
-  bool stop_wanted() const;
+  /// How many of `count` even shares of the run are over.
+  static int shares_done(const AnySimulation& simulation, int count);
+  int stop_wanted() const;
+  void add_up_ranks();
+  void on_first_rank(const std::function<void()>& work) const;
   void drop_old_end();
   Snapshot newest_intact_snapshot();
+  void keep(AnySimulation& simulation, bool row, bool snapshot);
+  bool is_same_case() const;
+  Snapshot snapshot_to_resume();
+  Snapshot checked_snapshot();
+  int write_end(const AnySimulation& simulation);
   void write_row(AnySimulation& simulation);
   void save(const AnySimulation& simulation);
   void save_scene(const AnySimulation& simulation, const Scene& scene);
@@ -76,6 +86,7 @@ class RunRecorder final : public Recorder {
   std::vector<Quantity> last_row_;
   std::vector<Frame> frames_;
   std::filesystem::path last_snapshot_;
+  int stop_ = 0;           ///< the signal that ended the run on all ranks, or time_is_over
   int rows_due_ = 0;       ///< floor(progress * samples) at the last row
   int snapshots_due_ = 0;  ///< the same for snapshots
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();

@@ -1,0 +1,155 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "softgrain/core/error.hpp"
+#include "softgrain/core/shared_loop.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+/// What each rank has written in each exchange. Ranks of one process take turns: each goes on until it would
+/// have to wait for another, and begins anew in its next turn.
+using Board = std::map<int, std::map<int, std::vector<std::byte>>>;  // [exchange][rank]
+struct MustWait {};
+
+class OneOfSeveral final : public Communicator {
+ public:
+  OneOfSeveral(int rank, int ranks, Board& board) : rank_(rank), ranks_(ranks), board_(board) {}
+  int rank() const override { return rank_; }
+  int ranks() const override { return ranks_; }
+  void gather(std::span<std::byte> all, std::span<const std::size_t> begin) override {
+    auto& parts = board_[exchange_++];
+    const auto part = [&](int r) { return all.subspan(begin[r], begin[r + 1] - begin[r]); };
+    parts[rank_].assign(part(rank_).begin(), part(rank_).end());
+    for (int r = 0; r < ranks_; ++r) {
+      if (!parts.contains(r)) throw MustWait();
+      REQUIRE(parts[r].size() == part(r).size());
+      std::copy(parts[r].begin(), parts[r].end(), part(r).begin());
+    }
+  }
+  std::int64_t largest(std::int64_t number) override {
+    std::vector<std::int64_t> all(ranks_);
+    all[rank_] = number;
+    std::vector<std::size_t> begin;
+    for (int r = 0; r <= ranks_; ++r) begin.push_back(r * sizeof number);
+    gather(std::as_writable_bytes(std::span(all)), begin);
+    return *std::max_element(all.begin(), all.end());
+  }
+
+ private:
+  int rank_, ranks_, exchange_ = 0;
+  Board& board_;
+};
+
+/// What work(rank) returns on each rank.
+template <class Work>
+auto on_ranks(int ranks, const Work& work) {
+  Board board;
+  std::vector<decltype(work(0))> result(ranks);
+  for (int waiting = 1, turn = 0; waiting > 0; ++turn) {
+    REQUIRE(turn < 20);
+    waiting = 0;
+    for (int r = 0; r < ranks; ++r) {
+      use_communicator(std::make_unique<OneOfSeveral>(r, ranks, board));
+      try {
+        result[r] = work(r);
+      } catch (const MustWait&) {
+        ++waiting;
+      }
+    }
+  }
+  use_communicator(std::make_unique<Communicator>());
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("ranks have units side by side, each about an equal part of their weight") {
+  for (const int ranks : {1, 2, 3, 4, 7, 20}) {
+    const std::vector<double> weight{1, 1, 1, 5, 1, 1, 1, 1, 2, 2, 2, 2};  // 20 in all
+    const auto first = on_ranks(ranks, [&](int rank) {
+      const Shares shares(weight);
+      int mine = 0;
+      double of_mine = 0;
+      for (int u = 0; u < 12; ++u)
+        if (shares.mine(u)) ++mine, of_mine += weight[u];
+      CHECK(of_mine <= 20.0 / ranks + 5);  // never more than the largest unit above its part
+      const std::vector<int> begin =
+          ranks == 1 ? std::vector{0, 12} : shares.first_items(12, [](int u) { return u; });
+      CHECK(begin.front() == 0);
+      CHECK(begin.back() == 12);
+      CHECK(begin[rank + 1] - begin[rank] == mine);
+      return mine;
+    });
+    CHECK(std::accumulate(first.begin(), first.end(), 0) == 12);  // each has one owner
+  }
+}
+
+TEST_CASE("a shared loop leaves what its results name with all ranks, and nothing else") {
+  struct Result {
+    std::vector<double> squares, own;
+    std::vector<std::vector<int>> divisors;
+  };
+  const std::vector<int> units{0, 2, 3, 5, 6, 7};  // items need not be of all units
+  const auto results = on_ranks(3, [&](int) {
+    const Shares shares(std::vector<double>(8, 1.0));
+    Result result{std::vector<double>(8), std::vector<double>(8), std::vector<std::vector<int>>(6)};
+    shared_for(
+        shares, 6, [&](int i) { return units[i]; },
+        [&](int i) { result.squares[units[i]] = result.own[units[i]] = units[i] * units[i]; },
+        [&](int i, Message& message) { message(result.squares[units[i]]); });
+    shared_for(
+        shares, 6, [&](int i) { return units[i]; },
+        [&](int i) {
+          for (int d = 1; d <= units[i]; ++d)
+            if (units[i] % d == 0) result.divisors[i].push_back(d);
+        },
+        [&](int i, Message& message) { message.list(result.divisors[i]); }, Lengths::told);
+    return result;
+  });
+  int own = 0;
+  for (const Result& result : results) {
+    CHECK(result.squares == std::vector<double>{0, 0, 4, 9, 0, 25, 36, 49});
+    CHECK(result.divisors == std::vector<std::vector<int>>{{}, {1, 2}, {1, 3}, {1, 5}, {1, 2, 3, 6}, {1, 7}});
+    own +=
+        static_cast<int>(std::count_if(result.own.begin(), result.own.end(), [](double x) { return x > 0; }));
+  }
+  CHECK(own == 5);
+}
+
+TEST_CASE("all ranks get the error of the first item that failed, whichever rank has it") {
+  const auto loop = [](int) {
+    const Shares shares(std::vector<double>(8, 1.0));
+    try {
+      shared_for(
+          shares, 8,
+          [](int i) {
+            if (i == 5) throw NumericalError("grain 5");
+            if (i == 7) throw IoError("grain 7");
+          },
+          [](int, Message&) {});
+    } catch (const NumericalError& error) {
+      return std::string("numerical: ") + error.what();
+    } catch (const std::exception& error) {
+      return std::string("other: ") + error.what();
+    }
+    return std::string("none");
+  };
+  for (const std::string& told : on_ranks(4, loop)) CHECK(told == "numerical: grain 5");
+  const auto writes = [](int rank) {
+    try {
+      together(rank == 0, [] { throw IoError("the disk is full"); });
+    } catch (const IoError& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  for (const std::string& told : on_ranks(3, writes)) CHECK(told == "the disk is full");
+}
