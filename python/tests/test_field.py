@@ -81,7 +81,9 @@ class Results(unittest.TestCase):
                 self.assertEqual(tuple(rows[0]), page.header(case))
                 codes = {row["code"] for row in rows}
                 self.assertLessEqual(codes, set(case.codes))
-                self.assertEqual(codes - {"reference"}, {row["code"] for row in cost if row["case"] == case.name})
+                timed = {row["code"] for row in cost if row["case"] == case.name}
+                self.assertLessEqual(timed, codes)
+                self.assertLessEqual(codes - timed, {"reference", "softgrain"})  # jamming: rows of an earlier study
                 self.assertTrue(all(row["version"] for row in rows if row["code"] != "reference"))
                 self.assertIn("softgrain", codes)
                 self.assertTrue(list((FIELD / case.name).glob("case.toml")) or case.name == "two_disks")

@@ -6,8 +6,9 @@ from .case import Curve
 from .work import cpu_seconds_of, first_line_of
 
 PROGRAM = "liggghts"
-MODULUS, STEPS, LARGEST = 1e7, 4000, 0.36  # of the deck: E* [Pa], steps, d/R at the end
-LAST_MULTICONTACT = 0.3  # d/R from which its force falls and jumps
+MODULUS, STEPS = 1e7, 4000  # of the deck: E* [Pa], steps
+# d/R at the end; with multicontact forces jump from 0.3 on
+LAST = {"default": 0.36, "multicontact": 0.26}
 
 
 def version():
@@ -19,9 +20,8 @@ def sphere(place):
     for variant, surface in (("Hertz", "default"), ("Hertz, multicontact", "multicontact")):
         cpu = cpu_seconds_of([PROGRAM, "-screen", "none", "-log", f"{surface}.liggghts.log", "-in",
                               place.decks.parent / "liggghts" / "two_spheres.in", "-var", "surface", surface, "-var", "multicontact",
-                              int(surface == "multicontact"), "-var", "out", f"{surface}.txt"], place.folder, f"{surface}.log")
+                              int(surface == "multicontact"), "-var", "last", LAST[surface], "-var", "out", f"{surface}.txt"], place.folder, f"{surface}.log")
         step, force = np.loadtxt(place.folder / f"{surface}.txt", comments="#").T
-        approach = step / STEPS * LARGEST
-        kept = approach < (LAST_MULTICONTACT if surface == "multicontact" else LARGEST)
-        curves.append(Curve(variant, 1, {"d/R": approach[kept], "F/(E* R^2)": np.abs(force[kept]) / MODULUS}, cpu))
+        approach = step / STEPS * LAST[surface]
+        curves.append(Curve(variant, 1, {"d/R": approach, "F/(E* R^2)": np.abs(force) / MODULUS}, cpu))
     return curves

@@ -30,7 +30,7 @@ class Variant:
 
     @property
     def folder(self):
-        return self.name.replace(" ", "").replace("=", "").replace(",", "_")
+        return self.name.replace(" ", "").replace("=", "").replace(",", "_").replace("%", "_percent_")
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def springs(code, variants, loading):
     def measure(place):
         curves = []
         for variant in variants:
-            if not variant.springs or (code is yade and len(variant.springs) > 1):
+            if not variant.springs or (code is yade and len(set(variant.springs.values())) > 1):
                 continue
             for seed in range(1, place.samples + 1):
                 start = read_start(place.decks / f"{variant.start}_seed{seed}.csv")
@@ -107,7 +107,8 @@ COMPACTION = Case(
 
 
 def _mixture(percent, values):
-    kinds = {(1, 1): SPRING, (1, 2): 2 * SPRING, (2, 2): RIGID * SPRING} if percent else {(1, 1): SPRING}
+    mixed, rigid = (2 * SPRING, RIGID * SPRING) if percent else (SPRING, SPRING)
+    kinds = {(1, 1): SPRING, (1, 2): mixed, (2, 2): rigid}
     return Variant(f"{percent} % rigid", values, 0.3, kinds, f"start_{percent}_percent_rigid")
 
 

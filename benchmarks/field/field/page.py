@@ -65,8 +65,8 @@ def draw(case, rows, path):
                 some = [row for row in rows if (row["code"], row["variant"]) == (code, variant)]
                 x, mean, spread = (np.array([_number(row[name]) for row in some])
                                    for name in (case.x.heading, y.heading, f"{y.name} spread[{y.unit}]"))
-                axes.errorbar(x, mean, spread, color=COLOURS[variants.index(variant) % len(COLOURS)], ls=LINES[code], lw=1, ms=3.5,
-                              marker="x" if code == "reference" else MARKERS[list(CODES).index(code)], capsize=2,
+                axes.errorbar(x, mean, spread, color=COLOURS[variants.index(variant) % len(COLOURS)], ls=LINES[code], lw=1,
+                              ms=7 if code == "reference" else 3.5, zorder=5 if code == "reference" else 2, marker="x" if code == "reference" else MARKERS[list(CODES).index(code)], capsize=2,
                               label=f"{CODES[code]}, {variant}")
         axes.set(xlabel=case.x.label, ylabel=y.label)
     figure.axes[0].legend(fontsize=6, frameon=False)
