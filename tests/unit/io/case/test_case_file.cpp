@@ -139,7 +139,8 @@ TEST_CASE("keys that do not fit together are refused where the last of them stan
 }
 
 TEST_CASE("what a bonded case may say can be run, at both ends of each range") {
-  const std::vector<std::string> small{"bpm.primaries=7", "bpm.library=1", "loading.max_strain=0.05", "loading.unload_at=[]"};
+  const std::vector<std::string> small{"bpm.primaries=7", "bpm.library=1", "loading.max_strain=0.05",
+                                       "loading.unload_at=[]"};
   for (const char* loading : {"diametral", "compaction"})
     for (const char* set :
          {"bpm.primaries=7", "bpm.size_ratio=1", "bpm.size_ratio=4", "bpm.attraction=1e-9",

@@ -74,7 +74,8 @@ TEST_CASE("keys that are said to have no effect change no bit of the motion") {
       }
     }
     silent += all.size();
-    CHECK(rows(parse_case(text, kind, all)) == rows(the_case));  // together: one that acts shows among the others
+    CHECK(rows(parse_case(text, kind, all)) ==
+          rows(the_case));  // together: one that acts shows among the others
   }
   CHECK(silent > 100);
 }

@@ -1,0 +1,7 @@
+"""The six cases, in their order."""
+
+from .one_grain import ONE_GRAIN, SPHERE
+from .packing_cases import COMPACTION, JAMMING, MIXTURE
+from .two_disks import TWO_DISKS
+
+CASES = (ONE_GRAIN, TWO_DISKS, JAMMING, COMPACTION, MIXTURE, SPHERE)
