@@ -57,6 +57,21 @@ TEST_CASE("a run killed at random moments while it writes often loses nothing th
   CHECK(same_series);
 }
 
+TEST_CASE("a run that was killed before its first snapshot, or as it began anew, is begun by --resume") {
+  const Workshop workshop;
+  const TinyCase tiny{"early", "diametral-mpm", tiny_settings("diametral-mpm")};
+  REQUIRE(run_tiny(workshop, tiny, "whole").exit_code == 0);
+  for (const char* left : {"mkdir -p r", "mkdir -p r/snap r/vtk && touch r/.lock",
+                           "mkdir -p r && touch r/run.json.tmp", "mkdir -p r/snap && cp whole/run.json r"}) {
+    CAPTURE(left);
+    REQUIRE(workshop.shell(std::string("rm -rf r && ") + left).exit_code == 0);
+    CHECK(run_tiny(workshop, tiny, "r", {"--resume"}).exit_code == 0);
+    CHECK(workshop.last_hash("r") == workshop.last_hash("whole"));
+  }
+  REQUIRE(workshop.shell("rm -rf r && mkdir -p r/snap && touch r/snap/mine").exit_code == 0);
+  CHECK(run_tiny(workshop, tiny, "r", {"--resume"}).exit_code == 2);  // what is not a run's stays
+}
+
 TEST_CASE("a torn last line of the series is repaired on resume") {
   const Workshop workshop;
   const TinyCase tiny{"torn", "diametral-mpm", tiny_settings("diametral-mpm")};

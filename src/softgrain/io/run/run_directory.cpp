@@ -50,10 +50,11 @@ void refuse_if_in_use(const RunPaths& paths, bool in_use, int process) {
 
 void refuse_if_not_empty(const RunPaths& paths) {
   const auto files = entries(paths.root);
-  const fs::path begun =
-      paths.run_file().string() + ".tmp";  // all that a run killed at its very start leaves
+  const fs::path begun = paths.run_file().string() + ".tmp";
+  // all that a run leaves which was killed at its very start, or as it began anew
   const bool empty = std::all_of(files.begin(), files.end(), [&](const fs::path& file) {
-    return file == paths.lock_file() || file == begun;
+    const bool folder = file == paths.snapshot_folder() || file == paths.vtk_folder();
+    return file == paths.lock_file() || file == begun || (folder && fs::is_empty(file));
   });
   require(empty, "{} is not empty; --resume goes on with the run in it, --force begins it anew",
           paths.root.string());
@@ -148,7 +149,7 @@ void RunDirectory::lock() {
 }
 
 void RunDirectory::clear() const {
-  for (const fs::path& file : {paths_.case_file(), paths_.run_file(), paths_.series_file(), paths_.log_file(),
+  for (const fs::path& file : {paths_.case_file(), paths_.series_file(), paths_.log_file(),
                                paths_.collection_file(), paths_.report_file()})
     fs::remove(file);
   for (const SnapshotFile& snapshot : list_snapshots(paths_)) fs::remove(snapshot.path);
@@ -156,6 +157,7 @@ void RunDirectory::clear() const {
     if (file.extension() == ".damaged") fs::remove(file);
   for (const fs::path& file : entries(paths_.vtk_folder()))
     if (file.extension() == ".vtp") fs::remove(file);
+  fs::remove(paths_.run_file());  // last: with it, what is left is still a run's
 }
 
 int running_process(const RunPaths& paths) {
