@@ -50,7 +50,7 @@ void place_rigid(const GrainBatch& batch, const RigidPose& pose, WideVectors& x)
 
 RigidPoseOf<3> rigid_pose(const BatchOf<3>& batch, const WidePlaces<3>& x) {
   const std::vector<Vec<3>>& X = batch.topology->grid.node;
-  const Vec<3, Wide> centre = x.back();
+  const Vec<3, Wide>& centre = x.back();
   // A = (sum r X^T)(sum X X^T)^-1, brought to a rotation: one step of Newton's for the polar factor, from
   // which the nodes are a round-off away
   Mat<3, Wide> rX{};
@@ -106,7 +106,7 @@ template <int Dim>
 RigidTwistOf<Dim> rigid_twist(const GrainsOf<Dim>& grains, const BatchOf<Dim>& batch,
                               const WidePlaces<Dim>& x, const WidePlaces<Dim>& v) {
   const RigidMassOf<Dim> all = rigid_mass(grains, batch);
-  const Vec<Dim, Wide> centre = x[centre_node(*batch.topology)];
+  const Vec<Dim, Wide>& centre = x[centre_node(*batch.topology)];
   Vec<Dim, Wide> momentum{};
   SpinOf<Dim, Wide> angular{};
   for (int i = 0; i < batch.topology->grid.nodes(); ++i) {

@@ -74,7 +74,7 @@ Snapshot RunRecorder::snapshot_to_resume() {
 
 Snapshot RunRecorder::checked_snapshot() {
   if (!is_same_case()) drop_old_end();
-  const Snapshot snapshot = newest_intact_snapshot();
+  Snapshot snapshot = newest_intact_snapshot();
   if (snapshot.case_text != request_.case_text) {
     const Case begun = parse_case(snapshot.case_text, last_snapshot_.string());
     const std::string why = why_no_extension(begun, request_.the_case);
