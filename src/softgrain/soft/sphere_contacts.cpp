@@ -1,12 +1,9 @@
 #include "softgrain/soft/sphere_contacts.hpp"
 
 #include <algorithm>
-#include <optional>
-#include <span>
 #include <tuple>
 
-#include "softgrain/core/parallel.hpp"
-#include "softgrain/geometry/images.hpp"
+#include "softgrain/soft/surface_lists.hpp"
 
 namespace softgrain {
 namespace {
@@ -38,12 +35,9 @@ Points points_of(const SolidGrains& grains, const OutlineStateOf<3>& state) {
     for (const PatchNet& net : shape.patches) {
       SurfaceContact middle{.point = patch++};
       if (shape.rigid()) continue;
-      middle.weight = patch_weights(net, 0.5, 0.5);
+      set_master(middle, net, begin, 0.5, 0.5);
       Vec<3> x;
-      for (std::size_t k = 0; k < 16; ++k) {
-        middle.master[k] = begin + net.vertex[k];
-        x += middle.weight[k] * state.position[middle.master[k]];
-      }
+      for (std::size_t k = 0; k < 16; ++k) x += middle.weight[k] * state.position[middle.master[k]];
       points.position.push_back(x);
       points.contact.push_back(middle);
     }
@@ -51,19 +45,11 @@ Points points_of(const SolidGrains& grains, const OutlineStateOf<3>& state) {
   return points;
 }
 
-/// The image of what the point meets.
-void set_image(SurfaceContact& contact, const OutlineStateOf<3>& state) {
-  if (!state.cell.any()) return;
-  const auto n = state.cell.nearest(state.position[contact.master[5]] - state.position[contact.vertex]);
-  contact.image = state.cell.shift(n);
-  contact.image_motion = state.dt * state.cell.velocity(n);
-}
-
 /// Normal and gap along the line from the master to the point.
 void add_if_near(const SolidGrains& grains, const OutlineStateOf<3>& state, double margin,
                  SurfaceContact contact, std::vector<SurfaceContact>& contacts) {
   contact.offset = offset_of(contact, grains);
-  set_image(contact, state);
+  set_image(contact, contact.master[5], state);
   Vec<3> d = Vec<3>{} - contact.image;
   contact.for_each_vertex([&](int v, double weight) { d += weight * state.position[v]; });
   const double distance = norm(d);
@@ -87,18 +73,6 @@ void add_contact(const SolidGrains& grains, const OutlineStateOf<3>& state, doub
   add_if_near(grains, state, margin, other, contacts);
 }
 
-void add_walls(const SolidGrains& grains, const OutlineStateOf<3>& state, double margin,
-               SurfaceContact contact, std::vector<SurfaceContact>& contacts) {
-  for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
-    if (state.walls[w].open) continue;
-    contact.wall = w;
-    contact.normal = state.walls[w].normal;
-    contact.offset = offset_of(contact, grains);
-    update_gap(contact, state);
-    if (contact.gap < margin) contacts.push_back(contact);
-  }
-}
-
 }  // namespace
 
 void add_sphere_contacts(const SolidGrains& grains, const OutlineStateOf<3>& state, double margin,
@@ -106,23 +80,17 @@ void add_sphere_contacts(const SolidGrains& grains, const OutlineStateOf<3>& sta
   const Points points = points_of(grains, state);
   if (points.sphere.empty()) return;
   const double reach = 2 * points.largest + margin;
-  std::optional<Images<3>> images;
-  if (state.cell.any()) images.emplace(points.position, state.cell, reach);
-  const CellGrid<3> grid(images ? std::span<const Vec<3>>(images->position) : points.position, reach);
-  const int count = static_cast<int>(points.sphere.size());
-  std::vector<std::vector<SurfaceContact>> parts((count + spheres_at_once - 1) / spheres_at_once);
-  parallel_for(static_cast<int>(parts.size()), [&](int k) {
-    for (int s = k * spheres_at_once; s < std::min(count, (k + 1) * spheres_at_once); ++s) {
-      const int i = points.sphere[s];
-      const SurfaceContact& sphere = points.contact[i];
-      add_walls(grains, state, margin, sphere, parts[k]);
-      grid.for_each_neighbour(i, [&](int at) {
-        const int j = images ? images->point[static_cast<std::size_t>(at)] : at;
-        if (j != i) add_contact(grains, state, margin, sphere, points.contact[j], parts[k]);
-      });
-    }
-  });
-  for (const auto& part : parts) contacts.insert(contacts.end(), part.begin(), part.end());
+  const ImagedGrid grid(points.position, state.cell, reach);
+  const auto add = [&](int s, std::vector<SurfaceContact>& list) {
+    const int i = points.sphere[s];
+    SurfaceContact sphere = points.contact[i];
+    sphere.offset = grains.radius(grains.grain_of_vertex(sphere.vertex));
+    add_wall_contacts(state, sphere, margin, list);
+    grid.for_each_neighbour(i, [&](int j, const Vec<3>&) {
+      if (j != i) add_contact(grains, state, margin, sphere, points.contact[j], list);
+    });
+  };
+  append_in_parallel(static_cast<int>(points.sphere.size()), spheres_at_once, contacts, add);
   const auto order = [&](const SurfaceContact& c) {
     return std::tuple(c.point, c.wall, c.wall < 0 ? facing_grain(c, grains) : 0);
   };

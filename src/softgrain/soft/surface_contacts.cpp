@@ -7,10 +7,9 @@
 #include <optional>
 #include <span>
 
-#include "softgrain/core/parallel.hpp"
-#include "softgrain/geometry/images.hpp"
 #include "softgrain/soft/carried_impulses.hpp"
 #include "softgrain/soft/sphere_contacts.hpp"
+#include "softgrain/soft/surface_lists.hpp"
 
 namespace softgrain {
 namespace {
@@ -45,12 +44,6 @@ struct Surfaces {
   double reach = 0;                 // from a place on a patch to its nearest vertex, at most [m]
 };
 
-/// Takes over the net's vertices with their weights.
-void set_master(SurfaceContact& contact, const PatchNet& net, int first_vertex, double u, double v) {
-  contact.weight = patch_weights(net, u, v);
-  for (std::size_t k = 0; k < 16; ++k) contact.master[k] = first_vertex + net.vertex[k];
-}
-
 /// A patch round a vertex, and how far x lies within it: the smaller of its two coordinates from the vertex.
 struct FacingPatch {
   int patch = 0;
@@ -84,14 +77,6 @@ std::vector<FacingPatch> patches_facing(const Surfaces& surfaces, int grain, int
   return facing;
 }
 
-/// The image of the vertex `nearest` that the point `vertex` meets.
-void set_image(SurfaceContact& contact, int nearest, const OutlineStateOf<3>& state) {
-  if (!state.cell.any()) return;
-  const auto n = state.cell.nearest(state.position[nearest] - state.position[contact.vertex]);
-  contact.image = state.cell.shift(n);
-  contact.image_motion = state.dt * state.cell.velocity(n);
-}
-
 /// Where the point `vertex` faces a grain, of which the vertex `nearest` is nearest to it.
 SurfaceContact contact_with_patch(const Surfaces& surfaces, int vertex, int grain, int nearest) {
   SurfaceContact contact{.point = vertex, .vertex = vertex};
@@ -114,39 +99,12 @@ SurfaceContact contact_with_patch(const Surfaces& surfaces, int vertex, int grai
   return contact;
 }
 
-/// All vertices, and those of their images that lie near a periodic cell, sorted into cells of a size.
-class VertexGrid {
- public:
-  VertexGrid(const OutlineStateOf<3>& state, double size)
-      : images_(images_of(state, size)),
-        position_(images_ ? images_->position : state.position),
-        grid_(position_, size) {}
-
-  /// visit(w, d): d is the way from vertex v to vertex w, or to an image of it.
-  template <class Visit>
-  void for_each_neighbour(int v, const Visit& visit) const {
-    grid_.for_each_neighbour(v, [&](int at) {
-      visit(images_ ? images_->point[static_cast<std::size_t>(at)] : at,
-            position_[static_cast<std::size_t>(at)] - position_[static_cast<std::size_t>(v)]);
-    });
-  }
-
- private:
-  static std::optional<Images<3>> images_of(const OutlineStateOf<3>& state, double reach) {
-    if (!state.cell.any()) return std::nullopt;
-    return Images<3>(state.position, state.cell, reach);
-  }
-  std::optional<Images<3>> images_;
-  std::span<const Vec<3>> position_;
-  CellGrid<3> grid_;
-};
-
 /// The vertex of each other grain nearest to vertex v, within the reach; sorted by grain.
 struct NearestVertex {
   int grain, vertex;
   double distance_squared;
 };
-void find_nearest(const Surfaces& surfaces, const VertexGrid& grid, double reach, int v,
+void find_nearest(const Surfaces& surfaces, const ImagedGrid& grid, double reach, int v,
                   std::vector<NearestVertex>& near) {
   near.clear();
   const int grain = surfaces.grains.grain_of_vertex(v);
@@ -166,22 +124,11 @@ void find_nearest(const Surfaces& surfaces, const VertexGrid& grid, double reach
             [](const NearestVertex& a, const NearestVertex& b) { return a.grain < b.grain; });
 }
 
-void add_wall_contacts(const Surfaces& surfaces, SurfaceContact contact, double margin,
-                       std::vector<SurfaceContact>& contacts) {
-  for (int w = 0; w < static_cast<int>(surfaces.state.walls.size()); ++w) {
-    if (surfaces.state.walls[w].open) continue;
-    contact.wall = w;
-    contact.normal = surfaces.state.walls[w].normal;
-    update_gap(contact, surfaces.state);
-    if (contact.gap < margin) contacts.push_back(contact);
-  }
-}
-
 /// Those of one vertex.
-void add_contacts_of_vertex(const Surfaces& surfaces, const VertexGrid& grid, double margin, int v,
+void add_contacts_of_vertex(const Surfaces& surfaces, const ImagedGrid& grid, double margin, int v,
                             std::vector<NearestVertex>& near, std::vector<SurfaceContact>& contacts) {
   if (surfaces.grains.topology(surfaces.grains.grain_of_vertex(v)).rigid()) return;
-  add_wall_contacts(surfaces, {.point = v, .vertex = v}, margin, contacts);
+  add_wall_contacts(surfaces.state, {.point = v, .vertex = v}, margin, contacts);
   find_nearest(surfaces, grid, surfaces.reach + margin, v, near);
   for (const NearestVertex& nearest : near) {
     const SurfaceContact contact = contact_with_patch(surfaces, v, nearest.grain, nearest.vertex);
@@ -199,17 +146,7 @@ void add_contacts_of_patch(const Surfaces& surfaces, double margin, int patch,
   const int begin = surfaces.grains.outline_begin(grain);
   SurfaceContact contact{.point = surfaces.grains.outline_size() + patch, .vertex = begin + net.vertex[5]};
   set_master(contact, net, begin, 0.5, 0.5);
-  add_wall_contacts(surfaces, contact, margin, contacts);
-}
-
-/// add(i, list) for i = 0 .. count - 1 on all threads; the lists one after the other.
-template <class Add>
-void append_in_parallel(int count, std::vector<SurfaceContact>& contacts, const Add& add) {
-  std::vector<std::vector<SurfaceContact>> parts((count + points_at_once - 1) / points_at_once);
-  parallel_for(static_cast<int>(parts.size()), [&](int k) {
-    for (int i = k * points_at_once; i < std::min(count, (k + 1) * points_at_once); ++i) add(i, parts[k]);
-  });
-  for (const auto& part : parts) contacts.insert(contacts.end(), part.begin(), part.end());
+  add_wall_contacts(surfaces.state, contact, margin, contacts);
 }
 
 }  // namespace
@@ -218,16 +155,17 @@ std::vector<SurfaceContact> SurfaceNeighbours::detect(const SolidGrains& grains,
                                                       const OutlineStateOf<3>& state, double margin) const {
   const Surfaces surfaces(grains, state);
   const double gap = margin * surfaces.segment;
-  const VertexGrid grid(state, surfaces.reach + gap);
+  const ImagedGrid grid(state.position, state.cell, surfaces.reach + gap);
   std::vector<SurfaceContact> contacts;
-  append_in_parallel(grains.outline_size(), contacts, [&](int v, std::vector<SurfaceContact>& list) {
-    thread_local std::vector<NearestVertex> near;
-    add_contacts_of_vertex(surfaces, grid, gap, v, near, list);
-  });
+  append_in_parallel(grains.outline_size(), points_at_once, contacts,
+                     [&](int v, std::vector<SurfaceContact>& list) {
+                       thread_local std::vector<NearestVertex> near;
+                       add_contacts_of_vertex(surfaces, grid, gap, v, near, list);
+                     });
   if (!state.walls.empty())
-    append_in_parallel(surfaces.patch_begin.back(), contacts, [&](int q, std::vector<SurfaceContact>& list) {
-      add_contacts_of_patch(surfaces, gap, q, list);
-    });
+    append_in_parallel(
+        surfaces.patch_begin.back(), points_at_once, contacts,
+        [&](int q, std::vector<SurfaceContact>& list) { add_contacts_of_patch(surfaces, gap, q, list); });
   if (grains.has_rigid()) add_sphere_contacts(grains, state, gap, contacts);
   return contacts;
 }
