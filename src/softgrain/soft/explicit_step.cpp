@@ -178,9 +178,10 @@ void ExplicitStep<Dim>::kick(double dt) {
     message(inverted[b]);
     pass_kicked(b, message);
   });
-  parallel_for(batches, [&](int b) {
-    if (grains.batches[b].topology->rigid()) kick_rigid(dt, grains.batches[b], batch_step_[b]);
-  });
+  if (grains.has_rigid())
+    parallel_for(batches, [&](int b) {
+      if (grains.batches[b].topology->rigid()) kick_rigid(dt, grains.batches[b], batch_step_[b]);
+    });
   for (const int grain : inverted)
     if (grain >= 0)
       throw NumericalError(

@@ -80,6 +80,7 @@ GrainsOf<Dim>::GrainsOf(std::vector<PlacementOf<Dim>> grains, std::vector<GrainM
 
 template <int Dim>
 void GrainsOf<Dim>::gather() {
+  if (shares.alone()) return;
   shared_for(
       shares, static_cast<int>(batches.size()), [](int) {},
       [&](int b, Message& message) {
