@@ -7,6 +7,7 @@ import select
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -14,6 +15,13 @@ from pathlib import Path
 
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+
+
+def require_browser():
+    """Exit code 77, for CTest's "skipped", where there is no Chromium."""
+    if CHROMIUM is None:
+        print("skipped: the page is not tested in a browser: no chromium; tools/install_dependencies.sh --with viewer")
+        sys.exit(77)
 
 
 class Browser:

@@ -10,7 +10,7 @@ import time
 import unittest
 from pathlib import Path
 
-from browser import CHROMIUM, BrowserTest
+from browser import BrowserTest, require_browser
 
 try:
     import h5py
@@ -19,9 +19,7 @@ try:
 except ImportError as error:
     print(f"skipped: {error}; tools/install_dependencies.sh installs it")
     sys.exit(77)
-if CHROMIUM is None:
-    print("skipped: the page is not tested in a browser: no chromium; tools/install_dependencies.sh --with viewer")
-    sys.exit(77)
+require_browser()
 
 PROGRAM = sys.argv[1]
 PICTURES = Path(sys.argv[2]) if len(sys.argv) > 2 else None

@@ -7,16 +7,14 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
-from browser import CHROMIUM, BrowserTest  # noqa: E402
+from browser import BrowserTest, require_browser  # noqa: E402
 
 try:
     from matplotlib.figure import Figure
 except ImportError as error:
     print(f"skipped: {error}; tools/install_dependencies.sh installs it")
     sys.exit(77)
-if CHROMIUM is None:
-    print("skipped: the page is not tested in a browser: no chromium; tools/install_dependencies.sh --with viewer")
-    sys.exit(77)
+require_browser()
 
 from softgrain.reproduce import causes, page  # noqa: E402
 from softgrain.reproduce.verdict import Verdict  # noqa: E402
