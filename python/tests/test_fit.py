@@ -4,6 +4,7 @@ import contextlib
 import importlib.util
 import io
 import json
+import os
 import tempfile
 import unittest
 import unittest.mock
@@ -129,12 +130,13 @@ class Grains(Temporary):
         self.assertAlmostEqual(told["parameters"][E]["value"] / 1e7, 1, delta=2e-3)
 
     def test_with_noise_the_modulus_lies_in_its_interval(self):
-        _, _, told = self.fit(self.case("elastic").set(E, 6e6), self.curve("elastic", seed=1), [E])
-        entry = told["parameters"][E]
-        self.assertTrue(entry["low"] <= 1e7 <= entry["high"], entry)
-        self.assertLess(entry["high"] / entry["low"], 1.04)
-        self.assertTrue(entry["determined"])
-        self.assertAlmostEqual(told["residual"], 0.02, delta=0.006)
+        for seed in (1, 2, 3) if "SOFTGRAIN_TORTURE" in os.environ else (1,):
+            _, _, told = self.fit(self.case("elastic").set(E, 6e6), self.curve("elastic", seed=seed), [E])
+            entry = told["parameters"][E]
+            self.assertTrue(entry["low"] <= 1e7 <= entry["high"], entry)
+            self.assertLess(entry["high"] / entry["low"], 1.04)
+            self.assertTrue(entry["determined"])
+            self.assertAlmostEqual(told["residual"], 0.02, delta=0.006)
 
     def test_of_modulus_and_poisson_ratio_their_plane_strain_modulus_alone_is_told(self):
         """A grain between walls is Hertz's: its curve depends on E/(1 - nu^2)."""
