@@ -126,8 +126,10 @@ void carry_out(const RunRequest& request, const RunDirectory& directory, const R
       for (const std::string& note : notes) progress.message(note);
     outcome = record_run(*simulation, directory, request, progress, signals);
   }
-  if (outcome.exit_code != 0 && communicator().rank() != 0) throw ExitCode{outcome.exit_code};
-  if (communicator().rank() != 0) return;
+  if (communicator().rank() != 0) {
+    if (outcome.exit_code != 0) throw ExitCode{outcome.exit_code};
+    return;
+  }
   const RunPaths& paths = directory.paths();
   const bool page = request.the_case.output.report && outcome.record.state == "done";
   if (page) write_report({paths.root}, paths.report_file());
