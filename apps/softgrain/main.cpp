@@ -5,6 +5,8 @@
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <csignal>
 #include <cstdio>
@@ -153,8 +155,10 @@ void refuse_equals_after_letter(int argc, char** argv) {
 
 /// Verbs of which ranks share the work.
 void refuse_ranks_without_work(const CLI::App& verb) {
-  require(communicator().ranks() == 1 || verb.get_name() == "run" || verb.get_name() == "resume",
-          "'{}' is no work for {} ranks: only run and resume are", verb.get_name(), communicator().ranks());
+  constexpr std::array<std::string_view, 3> shared{"run", "resume", "bench"};
+  require(communicator().ranks() == 1 || std::ranges::count(shared, verb.get_name()) > 0,
+          "'{}' is no work for {} ranks: only {} are", verb.get_name(), communicator().ranks(),
+          fmt::join(shared, ", "));
 }
 
 int run_program(int argc, char** argv) {

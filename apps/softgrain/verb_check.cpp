@@ -11,6 +11,7 @@
 #include "softgrain/experiment/advice.hpp"
 #include "softgrain/experiment/check_case.hpp"
 #include "softgrain/experiment/estimate.hpp"
+#include "softgrain/experiment/ranks_estimate.hpp"
 #include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/case/case_text.hpp"
 #include "softgrain/io/case/scope.hpp"
@@ -41,6 +42,7 @@ AdhesionAdvice adhesion_advice(const Case& the_case) {
 
 struct CheckOptions {
   CaseArguments arguments;
+  int ranks = 1;
   bool json = false;
 };
 
@@ -49,8 +51,9 @@ nlohmann::ordered_json finite(double number) {
   return std::isfinite(number) ? nlohmann::ordered_json(number) : nlohmann::ordered_json(nullptr);
 }
 
-void print_json(const CaseReading& reading, const Estimate& estimate, const Advice& advice) {
+void print_json(const CaseReading& reading, const Estimate& estimate, const Advice& advice, int ranks) {
   const AdhesionAdvice adhesion = adhesion_advice(reading.the_case);
+  const RanksEstimate together = estimate_on_ranks(reading.the_case, estimate, ranks);
   const nlohmann::ordered_json result{{"case", nlohmann::ordered_json::parse(case_json(reading.the_case))},
                                       {"estimate",
                                        {{"particles", estimate.particles},
@@ -59,6 +62,11 @@ void print_json(const CaseReading& reading, const Estimate& estimate, const Advi
                                         {"memory_bytes", estimate.memory},
                                         {"disk_bytes", estimate.disk},
                                         {"hours", estimate.hours}}},
+                                      {"ranks",
+                                       {{"count", ranks},
+                                        {"useful", together.useful},
+                                        {"hours", together.hours},
+                                        {"memory_bytes_each", together.memory}}},
                                       {"advice",
                                        {{"time_step", advice.time_step},
                                         {"longest_step", finite(advice.longest_step)},
@@ -82,6 +90,16 @@ void print_estimate(const Case& the_case, const Estimate& estimate) {
              count(estimate.particles), bpm ? "primary particles" : "material points",
              count(estimate.contacts), count(estimate.steps), estimate.memory / 1e6, estimate.disk / 1e6,
              duration_text(3600 * estimate.hours));
+}
+
+void print_estimate_on_ranks(const Case& the_case, const Estimate& alone, int ranks) {
+  const RanksEstimate together = estimate_on_ranks(the_case, alone, ranks);
+  fmt::print(stderr, "about {} on {} ranks of softgrain-mpi, by a model, with {:.0f} MB in each\n",
+             duration_text(3600 * together.hours), ranks, together.memory / 1e6);
+  if (together.useful < ranks)
+    fmt::print(stderr, "note: only {} of the ranks have work: {}\n", together.useful,
+               together.useful > 1 ? "elastic grains are shared in batches of eight, bonded ones one by one"
+                                   : "nothing of this case is shared");
 }
 
 /// Of AdhesionAdvice: segments in a cohesive zone, radii in a range.
@@ -136,10 +154,11 @@ void check(const CheckOptions& options) {
   check_case(the_case);
   const Estimate cost = estimate(the_case);
   const Advice advice = advise(the_case);
-  if (options.json) return print_json(reading, cost, advice);
+  if (options.json) return print_json(reading, cost, advice, options.ranks);
   fmt::print("{}", resolved_case_text(the_case));
   std::fflush(stdout);
   print_estimate(the_case, cost);
+  if (options.ranks > 1) print_estimate_on_ranks(the_case, cost, options.ranks);
   print_advice(advice);
   print_advice_on_adhesion(the_case);
   for (const std::string& note : notes_of(reading)) fmt::print(stderr, "{}\n", note);
@@ -151,6 +170,8 @@ void add_check_verb(CLI::App& app) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* verb = app.add_subcommand("check", "Check a case; print it resolved, and what it will cost");
   add_case_arguments(*verb, options->arguments);
+  verb->add_option("--ranks", options->ranks, "what so many ranks of softgrain-mpi would take")
+      ->check(CLI::Range(1, 1000000));
   verb->add_flag("--json", options->json, "resolved case and estimate as JSON");
   verb->footer(
       "Examples:\n"

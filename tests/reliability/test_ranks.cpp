@@ -201,7 +201,7 @@ TEST_CASE("what stops one rank stops all of them with its exit code, and with it
   SUBCASE("a verb without work for ranks") {
     const ProcessResult result = ranks.on(2, {"schema"});
     CHECK(result.exit_code == 2);
-    CHECK(lines_with(result.err, "'schema' is no work for 2 ranks: only run and resume are") == 1);
+    CHECK(lines_with(result.err, "'schema' is no work for 2 ranks: only run, resume, bench are") == 1);
   }
 }
 #endif

@@ -130,9 +130,9 @@ class MpiCommunicator final : public Communicator {
   void wait_for(MPI_Request& request) const {
     if (ends_within(request, longest_wait_)) return;
     constexpr int requeue = 75;
-    constexpr char text[] =
-        "error: ranks have not heard from one another for longer than SOFTGRAIN_WATCHDOG (600 s)\n";
-    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, sizeof text - 1);
+    const std::string text = "error: ranks have not heard from one another for longer than " +
+                             std::to_string(longest_wait_.count()) + " s (SOFTGRAIN_WATCHDOG)\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
     _exit(requeue);
   }
 

@@ -181,10 +181,11 @@ struct Case {
   } box;
 
   struct Output {
-    int samples = 600;   ///< rows of series.csv, evenly over the run
-    int snapshots = 24;  ///< restart points, evenly over the run
-    bool vtk = true;     ///< .vtp files for ParaView beside the snapshots
-    bool report = true;  ///< report.html when the run is done
+    int samples = 600;          ///< rows of series.csv, evenly over the run
+    int snapshots = 24;         ///< restart points, evenly over the run
+    double snapshot_every = 0;  ///< wall time after which another one is due [s]; 0: never
+    bool vtk = true;            ///< .vtp files for ParaView beside the snapshots
+    bool report = true;         ///< report.html when the run is done
   } output;
 };
 

@@ -195,8 +195,9 @@ std::size_t stages_written(const Case& c) {
 /// and by material point. A step writes one snapshot at most.
 double disk(const Case& c, const Estimate& e) {
   const bool bpm = is_bonded(c);
+  const double by_the_clock = c.output.snapshot_every > 0 ? 3600 * e.hours / c.output.snapshot_every : 0;
   const double frames =
-      std::min<double>(c.output.snapshots, e.steps) + static_cast<double>(stages_written(c));
+      std::min(c.output.snapshots + by_the_clock, e.steps) + static_cast<double>(stages_written(c));
   if (is_in_space(c)) return frames * (20e3 + 25 * e.particles);
   const double bytes_of_particle = (bpm ? 280 : 150) + (c.output.vtk ? 75 : 0);
   return frames * (20e3 + bytes_of_particle * e.particles + (bpm ? 900 * grains(c) : 0));
@@ -231,9 +232,9 @@ Estimate estimate(const Case& the_case) {
   result.contacts = bpm ? 2.2 * result.particles : grains(the_case) * 3.3 * the_case.mpm.cells;
   result.steps = std::round(loading_time(the_case) / first_time_step(the_case));
   result.memory = memory(the_case, result);
-  result.disk = disk(the_case, result);
   result.hours =
       (result.steps * seconds_of_step(the_case, result) + seconds_of_rows(the_case, result)) * second;
+  result.disk = disk(the_case, result);
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "softgrain/experiment/estimate.hpp"
+#include "softgrain/experiment/ranks_estimate.hpp"
 
 using namespace softgrain;
 
@@ -146,4 +147,31 @@ TEST_CASE("the memory of elastic grains is within a quarter of what runs took") 
     c.mpm.cells = cells;
     CHECK(estimate(c).memory == doctest::Approx(bytes).epsilon(0.25));
   }
+}
+
+TEST_CASE("ranks gain what docs/scaling.md says, and no more than they have batches") {
+  Case c;
+  c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::bpm};
+  c.sample.grains = 300;
+  // the page's packing: 60 000 primaries in steps of 16.9 ms
+  const Estimate bonded{.particles = 60000, .steps = 1000, .memory = 1e8, .hours = 16.9 / 3600};
+  const auto gain = [&](const Estimate& alone, int ranks) {
+    return alone.hours / estimate_on_ranks(c, alone, ranks).hours;
+  };
+  CHECK(estimate_on_ranks(c, bonded, 1).hours == doctest::Approx(bonded.hours).epsilon(1e-12));
+  for (const auto& [ranks, said] : {std::pair{2, 1.5}, {4, 2.1}, {8, 2.5}, {64, 3.1}}) {
+    CAPTURE(ranks);
+    CHECK(std::abs(gain(bonded, ranks) / said - 1) < 0.08);
+  }
+  CHECK(estimate_on_ranks(c, bonded, 4).memory == bonded.memory);
+  c.experiment.model = GrainModel::mpm;
+  c.sample.grains = 64;
+  const Estimate implicit{.particles = 64 * 896, .steps = 1000, .hours = 13.6 / 3600};
+  for (const auto& [ranks, said] : {std::pair{2, 1.5}, {4, 2.0}, {8, 2.5}}) {
+    CAPTURE(ranks);
+    CHECK(std::abs(gain(implicit, ranks) / said - 1) < 0.05);
+  }
+  CHECK(estimate_on_ranks(c, implicit, 64).useful == 8);
+  c.mpm.formulation = Formulation::updated_lagrangian;
+  CHECK(estimate_on_ranks(c, implicit, 8).useful == 1);
 }

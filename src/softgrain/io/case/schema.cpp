@@ -155,8 +155,7 @@ std::vector<Key> all_keys() {
           "time step dt; auto: bpm: a 43rd of the period of the bonds between the smallest primaries; implicit mpm: the "
           "wall moves 1 % of the smallest radius; explicit mpm: a stable step, which is divided while cells need it", everywhere, "auto"),
 
-      KEY(sample.seed, "", at_least(0),
-          "seed of the random numbers; another seed is another sample of the same grain", with_chance),
+      KEY(sample.seed, "", at_least(0), "seed of the random numbers; another seed is another sample of the same grain", with_chance),
       KEY(sample.places, "", its_words(), "of the grains at the start; pour: as they lie after a fall along -y into a box of the width that packing_fraction and aspect mean", random),
       KEY(sample.grains, "", from_to(1, 1e6), "grains in the box", random),
       KEY(sample.packing_fraction, "", between(0, 1), "undeformed grain area (volume in space) over that of the box at the start, below 0.8", random),
@@ -190,6 +189,7 @@ std::vector<Key> all_keys() {
 
       KEY(output.samples, "", from_to(1, 1e6), "rows of series.csv, evenly over the run"),
       KEY(output.snapshots, "", from_to(0, 1e5), "restart points, evenly over the run"),
+      KEY(output.snapshot_every, "min", at_least(0), "wall time since the last restart point after which another one is written; 0: none"),
       KEY(output.vtk, "", anything(), "write .vtp files for ParaView beside the snapshots"),
       KEY(output.report, "", anything(), "write report.html, a page to look at in a browser, when the run is done"),
   };

@@ -63,6 +63,11 @@ int RunRecorder::stop_wanted() const {
   return wall_seconds() - wall_before_ >= request_.stop_after ? time_is_over : 0;
 }
 
+bool RunRecorder::snapshot_is_due() const {
+  const double every = request_.the_case.output.snapshot_every;
+  return every > 0 && wall_seconds() - kept_at_ >= every;
+}
+
 /// On all ranks.
 void RunRecorder::add_up_ranks() {
   Communicator& all = communicator();
@@ -112,7 +117,8 @@ bool RunRecorder::after_step(AnySimulation& simulation, const StepReport& step, 
     });
   const bool last = simulation.finished();
   // what one rank is asked for, all do
-  const int asked = 2 * (last ? 0 : stop_wanted()) + (signals_.take_snapshot_request() ? 1 : 0);
+  const bool asked_for_state = signals_.take_snapshot_request() || snapshot_is_due();
+  const int asked = 2 * (last ? 0 : stop_wanted()) + (asked_for_state ? 1 : 0);
   const auto wanted = static_cast<int>(communicator().largest(asked));
   stop_ = wanted / 2;
   const bool row = last || shares_done(simulation, request_.the_case.output.samples) > rows_due_;
@@ -136,6 +142,7 @@ void RunRecorder::keep(AnySimulation& simulation, bool row, bool snapshot) {
     add_up_ranks();
     on_first_rank([&] { save(simulation); });
     snapshots_due_ = shares_done(simulation, request_.the_case.output.snapshots);
+    kept_at_ = wall_seconds();
   }
 }
 

@@ -29,10 +29,10 @@ struct RunRequest {
   bool verbose = false;                                         ///< the log goes to stderr too
 };
 
-/// Fills a run's directory while the run goes; of several ranks the first one does. What is written depends
-/// on the simulation's progress alone, so that a resumed run writes the same: a row of series.csv whenever
-/// floor(progress * samples) grows, a snapshot whenever floor(progress * snapshots) grows or the load turns,
-/// and both for the first and the last state.
+/// Fills a run's directory while the run goes; of several ranks the first one does. Rows of series.csv depend
+/// on the simulation's progress alone, so that a resumed run writes the same: one whenever
+/// floor(progress * samples) grows. A snapshot is due whenever floor(progress * snapshots) grows, the load
+/// turns, or output.snapshot_every has passed by the clock. The first and the last state bring both.
 class RunRecorder final : public Recorder {
  public:
   RunRecorder(const RunPaths& paths, RunRequest request, Progress& progress, SignalWatch& signals);
@@ -61,6 +61,8 @@ class RunRecorder final : public Recorder {
   /// How many of `count` even shares of the run are over.
   static int shares_done(const AnySimulation& simulation, int count);
   int stop_wanted() const;
+  /// By the clock.
+  bool snapshot_is_due() const;
   void add_up_ranks();
   void on_first_rank(const std::function<void()>& work) const;
   void drop_old_end();
@@ -92,6 +94,7 @@ class RunRecorder final : public Recorder {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   double wall_before_ = 0;  ///< of the parts before this one [s]
   double cpu_before_ = 0;   ///< [s]
+  double kept_at_ = 0;      ///< wall time of the last snapshot, of all parts [s]
 };
 
 /// How a run ended.

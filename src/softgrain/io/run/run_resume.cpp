@@ -89,7 +89,7 @@ RunReport RunRecorder::resume(AnySimulation& simulation) {
   simulation.restore(snapshot.checkpoint);
   record_.report = snapshot.report;
   sums_ = snapshot.sums;
-  wall_before_ = snapshot.wall_seconds;
+  wall_before_ = kept_at_ = snapshot.wall_seconds;
   cpu_before_ = snapshot.cpu_seconds;
   rows_due_ = shares_done(simulation, request_.the_case.output.samples);
   snapshots_due_ = shares_done(simulation, request_.the_case.output.snapshots);

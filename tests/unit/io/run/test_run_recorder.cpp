@@ -140,6 +140,24 @@ TEST_CASE("SIGUSR1 writes a snapshot and the run goes on") {
   CHECK(run_json(directory.path())["state"] == "done");
 }
 
+TEST_CASE(
+    "a snapshot is due when output.snapshot_every has passed by the clock, and a long time brings none") {
+  RunRequest by_the_clock = request();
+  by_the_clock.the_case.output.snapshots = 0;
+  const auto kept = [&](double seconds) {
+    const test::TemporaryDirectory directory;
+    by_the_clock.the_case.output.snapshot_every = seconds;
+    CHECK(run_ball(directory.path(), by_the_clock).exit_code == 0);
+    const test::TemporaryDirectory whole;
+    run_ball(whole.path(), request());
+    CHECK(physics(directory.path()) == physics(whole.path()));
+    CHECK(final_hash(directory.path()) == final_hash(whole.path()));
+    return list_snapshots(RunPaths{directory.path()}).size();
+  };
+  CHECK(kept(1e-9) == 401);  // after every step, and the first state
+  CHECK(kept(3600) == 2);    // the first and the last state
+}
+
 TEST_CASE("resuming skips damaged snapshots, sets them aside and still gives the same run") {
   const test::TemporaryDirectory whole, parts;
   run_ball(whole.path(), request());

@@ -1,0 +1,13 @@
+# softgrain_join(TARGET LINES SOURCE...): the sources are compiled in joints of at most LINES lines
+# (tools/joint_sources.py), which halves the time of a build from nothing.
+function(softgrain_join target lines)
+  execute_process(COMMAND "${Python_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/tools/joint_sources.py" ${lines} ${ARGN}
+    OUTPUT_VARIABLE joints OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  string(REPLACE "\n" ";" joints "${joints}")
+  foreach(line IN LISTS joints)
+    string(REGEX MATCH "^([0-9]+) (.*)$" line "${line}")
+    set_source_files_properties("${CMAKE_MATCH_2}" PROPERTIES UNITY_GROUP "joint_${CMAKE_MATCH_1}")
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP
+    UNITY_BUILD_CODE_BEFORE_INCLUDE "#pragma GCC diagnostic ignored \"-Wshadow\"")  # of a hidden name of another source
+endfunction()
