@@ -179,6 +179,33 @@ class Plans(unittest.TestCase):
         self.assertEqual({run.values["loading.wall_velocity"] for run in fast}, {"1 m/s"})
         self.assertEqual({run.values["contact.wall_friction"] for run in runs}, {"0.1"})
 
+    def test_quick_packings_have_sixty_grains_and_take_a_minute_on_two_cores(self):
+        """By the program's own estimate, of which figures and start take five seconds and the last run of one core as many."""
+        runs = plan.planned_runs(plan.FIGURES, plan.SCALES["quick"])
+        self.assertGreaterEqual(min(run.values["sample.grains"] for run in runs if run.packing), 60)
+        program, seconds, total = os.environ["SOFTGRAIN_PROGRAM"], {}, 0
+        with tempfile.TemporaryDirectory() as folder:
+            for template in {run.template for run in runs}:
+                subprocess.run([program, "new", f"{folder}/{template}", "--template", template], check=True, stdout=subprocess.DEVNULL)
+            for run in runs:  # the estimate knows neither samples nor friction
+                kind = run.template, *(item for item in run.values.items() if item[0] not in ("sample.seed", "contact.friction"))
+                if kind not in seconds:
+                    words = [program, "check", "--json", f"{folder}/{run.template}/case.toml", *run.command_values]
+                    told = subprocess.run(words, capture_output=True, check=True)
+                    seconds[kind] = 3600 * json.loads(told.stdout)["estimate"]["hours"]
+                total += seconds[kind]
+        self.assertLess(total, 2 * 50, seconds)
+
+    def test_what_shows_a_cause_is_tried_at_every_scale(self):
+        for scale in plan.SCALES.values():
+            self.assertIn((2, 0.3), scale.attractions)  # yields at sigma_I
+            self.assertLessEqual(set(scale.attractions), set(plan.ATTRACTIONS))
+
+    def test_a_slow_bonded_run_ends_where_its_exponent_does_and_asks_for_no_stress(self):
+        slow = next(run for run in plan.planned_runs(("fig4",), plan.SCALES["quick"]) if run.packing == (plan.SLOW, "bpm", 0.0))
+        self.assertGreater(slow.values["loading.max_packing_fraction"], 1)
+        self.assertEqual(slow.values["loading.max_stress"], 0)  # else it would be doubtful
+
     def test_a_run_tells_the_commands_that_make_it(self):
         run = plan.PlannedRun("one", "compaction-mpm", {"time.step": "5 us"})
         self.assertEqual(run.words, "softgrain new one --template compaction-mpm && softgrain run one/case.toml -o out/one "
