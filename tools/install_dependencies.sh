@@ -37,9 +37,9 @@ tests      libopenmpi-dev          softgrain-mpi
 tests      openmpi-bin             mpirun starts its ranks
 mpi        libopenmpi-dev          softgrain-mpi, whose ranks share a run, 0.06 GB
 mpi        openmpi-bin             mpirun starts its ranks
-tests      python3-scipy           tests of softgrain fit and of designs
+tests      python3-scipy           tests of softgrain fit and voronoi, and of designs
 tests      python3-ase             reads our extended XYZ
-fit        python3-scipy           softgrain fit, designs of softgrain sweep, 60 MB
+fit        python3-scipy           softgrain fit and voronoi, designs of softgrain sweep, 60 MB
 movie      ffmpeg                  softgrain movie writes MP4, 0.16 GB
 checks     python3                 tools/check_layers
 checks     clang-format            one format for all sources

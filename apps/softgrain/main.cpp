@@ -84,6 +84,7 @@ void add_verbs(CLI::App& app) {
   add_python_verb(app, "fit");
   add_report_verb(app);
   add_export_verb(app);
+  add_python_verb(app, "voronoi");
   add_python_verb(app, "paraview");
   add_info_verb(app);
   add_solve_verb(app);

@@ -7,8 +7,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from html import escape
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from . import voronoi
 
 
 class NotRecorded(LookupError):
@@ -53,6 +57,12 @@ class Snapshot:
         from .export.contacts import contact_table
 
         return contact_table(self)
+
+    def voronoi(self, points: int | None = None) -> "voronoi.Cells":
+        """Set-Voronoi cells of the grains: volumes, local packing fractions, neighbours (softgrain.voronoi). Needs SciPy."""
+        from .voronoi import cells
+
+        return cells.cells_of(self, points or cells.POINTS)
 
     def images(self) -> np.ndarray:
         """(m, 2) or (m, 3) [m]: from what is shown to its next images across the edges of a periodic cell, the first of all itself."""
@@ -217,6 +227,10 @@ class Plots:
     def profile(self):
         """Density, and stress and friction of the side walls, by height, at the largest load."""
         return self._draw("draw_profile", self.run)
+
+    def voronoi(self):
+        """Local packing fractions and numbers of neighbours, from set-Voronoi cells. Needs SciPy."""
+        return self._draw("draw_voronoi", self.run)
 
     def heckel(self, window: tuple[float, float] | None = None):
         """Heckel's line and Panelli and Ambrozio's curve, over a window of pressures [Pa]."""

@@ -31,6 +31,9 @@ def draw(options):
             figures["kawakita" + suffix] = ([run], lambda run=run: plot.draw_kawakita(run, window))
             figures["profile" + suffix] = ([run], lambda run=run: plot.draw_profile(run))
 
+        if options.kind == "voronoi":
+            figures["voronoi" + suffix] = ([run], lambda run=run: plot.draw_voronoi(run))
+
     beside = runs[0].path if len(runs) == 1 else Path()
     folder = Path(options.output) if options.output else beside / "figures"
     folder.mkdir(parents=True, exist_ok=True)
