@@ -24,11 +24,20 @@ namespace {
 constexpr double speed = 5, implicit_dt = 5e-6, last_phi = 0.985;
 
 struct Packing {
-  SoftGrains grains;
   std::vector<Wall<2>> walls;
   double area = 0, side = 0;
+  SoftGrains grains;
 
-  Packing(int count, int cells) : grains({}, make_law(MaterialLaw::neo_hookean, 10e6, 0.45), 990) {
+  Packing(int count, int cells)
+      : grains(placed(count, cells), make_law(MaterialLaw::neo_hookean, 10e6, 0.45), 990) {
+    walls = {{{0, 0}, {0, 1}, {}},
+             {{0, side}, {0, -1}, {0, -speed}},
+             {{0, 0}, {1, 0}, {}},
+             {{side, 0}, {-1, 0}, {}}};
+  }
+
+ private:
+  std::vector<GrainPlacement> placed(int count, int cells) {
     const BoxSample sample = sample_box({.grains = count});
     const auto shape = std::make_shared<const Topology>(disk_grid(cells));
     std::vector<GrainPlacement> placed;
@@ -36,12 +45,8 @@ struct Packing {
       placed.push_back({shape, grain.radius, grain.centre, grain.angle, {}});
       area += std::numbers::pi * grain.radius * grain.radius;
     }
-    grains = SoftGrains(std::move(placed), grains.law(grains.batches[0]), grains.density(grains.batches[0]));
     side = sample.width;  // square
-    walls = {{{0, 0}, {0, 1}, {}},
-             {{0, side}, {0, -1}, {0, -speed}},
-             {{0, 0}, {1, 0}, {}},
-             {{side, 0}, {-1, 0}, {}}};
+    return placed;
   }
 };
 

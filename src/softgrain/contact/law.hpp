@@ -46,10 +46,8 @@ template <int Dim, class T>
 
 /// Projection of p on the Coulomb cone |p_t| <= mu p_n.
 template <int Dim>
-Vec<Dim> project_on_coulomb_cone(Vec<Dim> p, double mu) {
-  double tangential = 0;
-  for (int k = 1; k < Dim; ++k) tangential += p[k] * p[k];
-  tangential = std::sqrt(tangential);
+[[gnu::always_inline]] inline Vec<Dim> project_on_coulomb_cone(Vec<Dim> p, double mu) {
+  const double tangential = Dim == 2 ? std::abs(p[1]) : std::sqrt(p[1] * p[1] + p[Dim - 1] * p[Dim - 1]);
   if (p[0] >= 0 && tangential <= mu * p[0]) return p;
   const double normal = std::max(0.0, (p[0] + mu * tangential) / (1 + mu * mu));
   p[0] = normal;
@@ -60,7 +58,7 @@ Vec<Dim> project_on_coulomb_cone(Vec<Dim> p, double mu) {
 /// P(p + omega (p' - p)), p' the solution of one contact; P, the projection on the Coulomb cone, acts only
 /// for omega > 1.
 template <int Dim>
-Vec<Dim> relaxed_impulse(const Vec<Dim>& p, const Vec<Dim>& solved, double mu, double omega) {
+[[gnu::always_inline]] inline Vec<Dim> relaxed_impulse(const Vec<Dim>& p, const Vec<Dim>& solved, double mu, double omega) {
   const Vec<Dim> next = p + omega * (solved - p);
   return omega > 1 ? project_on_coulomb_cone(next, mu) : next;
 }

@@ -18,7 +18,7 @@ inline std::array<Vec<3>, 2> tangents(const Vec<3>& n) {
 
 /// p_n n + p_t t, of the components (p_n, p_t) along a normal and its tangents.
 template <int Dim>
-Vec<Dim> from_local(const Vec<Dim>& n, const Vec<Dim>& p) {
+[[gnu::always_inline]] inline Vec<Dim> from_local(const Vec<Dim>& n, const Vec<Dim>& p) {
   Vec<Dim> world = p[0] * n;
   if constexpr (Dim == 3)
     if (p[1] == 0 && p[2] == 0) return world;
@@ -29,7 +29,7 @@ Vec<Dim> from_local(const Vec<Dim>& n, const Vec<Dim>& p) {
 
 /// The components of a vector along a normal and its tangents.
 template <int Dim>
-Vec<Dim> to_local(const Vec<Dim>& n, const Vec<Dim>& world) {
+[[gnu::always_inline]] inline Vec<Dim> to_local(const Vec<Dim>& n, const Vec<Dim>& world) {
   Vec<Dim> p{dot(n, world)};
   const auto t = tangents(n);
   for (int k = 1; k < Dim; ++k) p[k] = dot(t[static_cast<std::size_t>(k - 1)], world);

@@ -32,8 +32,8 @@ inline int facing_segment(const Ring& ring, std::span<const Vec<2>> position, co
 
 /// The place that a slave at x faces on the curve from the vertex `start` to the next. At a corner the curve
 /// ends as one whose next vertex is the corner itself: sides between corners are straight.
-inline OutlineContact curve_contact(std::span<const Vec<2>> position, const Ring& ring, int slave,
-                                    const Vec<2>& x, int start) {
+[[gnu::always_inline]] inline OutlineContact curve_contact(std::span<const Vec<2>> position, const Ring& ring,
+                                                           int slave, const Vec<2>& x, int start) {
   const int end = ring.next(start);
   OutlineContact contact{.vertex = slave,
                          .master = {ring.is_corner(start) ? start : ring.previous(start), start, end,

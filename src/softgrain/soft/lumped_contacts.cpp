@@ -14,7 +14,7 @@ constexpr int least_for_threads = 512;
 
 /// sum weight v
 template <int Dim>
-inline Vec<Dim> LumpedSystem<Dim>::velocity_of(const Row& row) const {
+[[gnu::always_inline]] inline Vec<Dim> LumpedSystem<Dim>::velocity_of(const Row& row) const {
   const Vec<Dim>* v = velocity_.data();
   Vec<Dim> u = row.weight[0] * v[row.vertex[0]];
   if (row.vertices == 1) return u;
@@ -34,7 +34,7 @@ inline Vec<Dim> LumpedSystem<Dim>::relative_velocity(const Row& row) const {
 }
 
 template <int Dim>
-inline void LumpedSystem<Dim>::apply_impulse(const Row& row, const Vec<Dim>& dp) {
+[[gnu::always_inline]] inline void LumpedSystem<Dim>::apply_impulse(const Row& row, const Vec<Dim>& dp) {
   const Vec<Dim> P = from_local(row.normal, dp);
   Vec<Dim>* v = velocity_.data();
   v[row.vertex[0]] += row.mobility[0] * P;
@@ -125,7 +125,7 @@ void LumpedSystem<Dim>::apply_impulses(std::span<const Vec<Dim>> impulse) {
 
 /// Puts one contact right, and adds the violation that it showed.
 template <int Dim>
-inline void LumpedSystem<Dim>::solve(const Row& row, Vec<Dim>& p, double friction,
+[[gnu::always_inline]] inline void LumpedSystem<Dim>::solve(const Row& row, Vec<Dim>& p, double friction,
                                      const SolverOptions& options, Violation& violation) {
   const Vec<Dim> v = velocity_of(row);
   const double u_n = dot(row.normal, v) + row.offset[0];

@@ -22,7 +22,7 @@ class SpanCurve {
   Vec<2> tangent(double xi) const { return b_ + xi * (2.0 * c_ + 3 * xi * d_); }
 
   /// Where in [0, 1] it is closest to x: the root of (x - c) . c', by Newton's method inside a bracket.
-  double closest_to(const Vec<2>& x) const {
+  [[gnu::always_inline]] double closest_to(const Vec<2>& x) const {
     const Vec<2> chord = end_ - start_;
     double low = 0, high = 1;
     double xi = std::clamp(dot(x - start_, chord) / dot(chord, chord), 0.0, 1.0);
