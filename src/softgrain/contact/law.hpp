@@ -58,7 +58,8 @@ template <int Dim>
 /// P(p + omega (p' - p)), p' the solution of one contact; P, the projection on the Coulomb cone, acts only
 /// for omega > 1.
 template <int Dim>
-[[gnu::always_inline]] inline Vec<Dim> relaxed_impulse(const Vec<Dim>& p, const Vec<Dim>& solved, double mu, double omega) {
+[[gnu::always_inline]] inline Vec<Dim> relaxed_impulse(const Vec<Dim>& p, const Vec<Dim>& solved, double mu,
+                                                       double omega) {
   const Vec<Dim> next = p + omega * (solved - p);
   return omega > 1 ? project_on_coulomb_cone(next, mu) : next;
 }

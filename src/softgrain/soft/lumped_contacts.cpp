@@ -126,7 +126,8 @@ void LumpedSystem<Dim>::apply_impulses(std::span<const Vec<Dim>> impulse) {
 /// Puts one contact right, and adds the violation that it showed.
 template <int Dim>
 [[gnu::always_inline]] inline void LumpedSystem<Dim>::solve(const Row& row, Vec<Dim>& p, double friction,
-                                     const SolverOptions& options, Violation& violation) {
+                                                            const SolverOptions& options,
+                                                            Violation& violation) {
   const Vec<Dim> v = velocity_of(row);
   const double u_n = dot(row.normal, v) + row.offset[0];
   if (p[0] == 0 && u_n >= 0) return;
