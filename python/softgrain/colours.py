@@ -32,11 +32,16 @@ class Range(NamedTuple):
         return np.column_stack([np.interp(np.nan_to_num(share), place, channel) for channel in colours.T])
 
     def hexadecimal(self, values) -> list[str]:
-        return ["#%02x%02x%02x" % tuple(row) for row in np.rint(255 * self.rgb(values)).astype(int)]
+        return words_of(self.rgb(values))
 
     @property
     def chains(self) -> str:
         return CHAINS_ON_ORANGE if self.map == "PuOr" else CHAINS
+
+
+def words_of(rgb) -> list[str]:
+    """(n, 3), from 0 to 1, as #rrggbb."""
+    return ["#%02x%02x%02x" % tuple(row) for row in np.rint(255 * np.asarray(rgb)).astype(int)]
 
 
 def colours_of(name: str) -> np.ndarray:

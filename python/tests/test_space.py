@@ -2,16 +2,21 @@
 
 import contextlib
 import io
+import itertools
 import re
+import sys
 import tempfile
+import types
 import unittest
+import unittest.mock
 from pathlib import Path
+from xml.etree import ElementTree
 
 import h5py
 import numpy as np
 
 import softgrain
-from softgrain import plot, solids
+from softgrain import plot, solids, view
 from softgrain.export.__main__ import main as export
 from softgrain.movie import film_of
 from softgrain.movie.__main__ import main as movie
@@ -73,19 +78,16 @@ class Pictures(InSpace):
         for frame in frames:  # the cube is seen from slightly above: its top edge sinks by the strain
             coloured = np.ptp(frame[:, 20:280].astype(int), axis=2).max(axis=1) > 15
             heights.append(np.flatnonzero(coloured)[0])
-        sunk = 0.1 * np.cos(plot.space.ELEVATION) * film.panel.scale * 480 / 180  # pixels
+        sunk = 0.1 * np.cos(view.ELEVATION) * film.panel.scale * 480 / 180  # pixels
         np.testing.assert_allclose(np.diff(heights), sunk, atol=1.1)
         (x,), (y,) = film.point.get_data()
         self.assertEqual((x, y), (0.2, 0.2))
 
-    def test_the_verb_writes_a_film_and_leaves_drawings_as_svg_to_plot(self):
-        path, words = self.run_in_space.path / "film.gif", io.StringIO()
+    def test_the_verb_writes_a_film(self):
+        path = self.run_in_space.path / "film.gif"
         with contextlib.redirect_stdout(io.StringIO()):
             self.assertEqual(movie([str(self.run_in_space.path), "-o", str(path), "--width=160"]), 0)
         self.assertEqual(path.read_bytes()[:3], b"GIF")
-        with contextlib.redirect_stderr(words):
-            self.assertEqual(export([str(self.run_in_space.path), "--to=svg"]), 2)
-        self.assertIn("softgrain plot", words.getvalue())
 
 
 class Files(InSpace):
@@ -108,6 +110,54 @@ class Files(InSpace):
             self.assertAlmostEqual(float(row[6]), 1e5 * step)
             axes = np.array(row[7:10], float)  # a block's semi-axes are in the ratio of its edges
             np.testing.assert_allclose(axes / axes[0], [1, 1, height], rtol=1e-6)
+
+    def test_a_drawing_has_the_faces_that_look_at_us_at_one_scale_over_the_run(self):
+        tops, colours = [], []
+        for frame in range(3):
+            root = ElementTree.fromstring("\n".join(self.export("svg", f"--frame={frame}")))
+            shapes = root.findall("{*}polygon")
+            edges = [shape for shape in shapes if shape.get("fill") == "none"]
+            faces = [shape for shape in shapes if shape.get("fill") != "none"]
+            self.assertEqual((len(edges), len(faces)), (6, 3))
+            points = np.array([[point.split(",") for point in face.get("points").split()] for face in faces], float)
+            tops.append(points[:, :, 1].min())
+            colours.append({face.get("fill") for face in faces})
+            self.assertIn("pressure [kPa]", [text.text for text in root.findall("{*}text")])
+        width = np.ptp(points[:, :, 0])  # of a cube of edge 1, seen from the side: |sin a| + |cos a|
+        pixels = width / (abs(np.sin(view.AZIMUTH)) + abs(np.cos(view.AZIMUTH)))
+        np.testing.assert_allclose(np.diff(tops), 0.1 * np.cos(view.ELEVATION) * pixels, atol=0.02)
+        self.assertEqual(len(set.union(*colours)), 9)  # three pressures, each in the light of three faces
+
+    def test_paraview_gets_a_scene_of_the_surfaces(self):
+        """With a stand-in for ParaView that takes every call and writes down the readers and what is set."""
+        folder = self.run_in_space.path / "vtk"
+        folder.mkdir()
+        for kind, step in itertools.product(("surfaces", "contacts", "walls"), range(3)):
+            (folder / f"{kind}_{step:06d}.vtp").touch()
+        with contextlib.redirect_stdout(io.StringIO()) as words:
+            self.assertEqual(export([str(self.run_in_space.path), "--to=paraview"]) or 0, 0)
+        scene, shown, eye = Path(words.getvalue().strip()), [], []
+
+        class Thing:
+            def __getattr__(self, name):
+                return lambda *a, **k: Thing()
+
+            def __setattr__(self, name, value):
+                if name == "CameraPosition":
+                    eye.append(value)
+
+        class Module(types.ModuleType):
+            def __getattr__(self, name):
+                return lambda *a, **k: (shown.append(Path(k["FileName"])) if name == "PVDReader" else None, Thing())[1]
+
+        with unittest.mock.patch.dict(sys.modules, {"paraview": types.ModuleType("paraview"), "paraview.simple": Module("simple")}):
+            exec(compile(scene.read_text(), str(scene), "exec"), {})
+        self.assertEqual([path.name for path in shown], ["surfaces.pvd", "contacts.pvd", "walls.pvd"])
+        np.testing.assert_allclose(eye[0], view.directions()[2], atol=1e-5)
+        for path in shown:
+            entries = ElementTree.parse(path).findall(".//DataSet")
+            self.assertEqual([float(entry.get("timestep")) for entry in entries], [0, 1, 2])
+            self.assertTrue(all((path.parent / entry.get("file")).exists() for entry in entries))
 
     def test_a_dump_and_tables_have_three_coordinates(self):
         dump = self.export("lammps", "--frame=-1")

@@ -6,20 +6,17 @@ from pathlib import Path
 import softgrain
 
 from .. import colours
-from ..verb import carry_out, refuse_space
+from ..verb import carry_out
 from . import scale_of, write_contacts, write_csv, write_lammps, write_rocrate, write_svg, write_vtkhdf, write_xyz
 from .paraview import write_scene
 
 MOVIES = {"xyz": (write_xyz, "xyz"), "lammps": (write_lammps, "dump"), "vtkhdf": (write_vtkhdf, "vtkhdf")}  # all frames in one file
-KNOW_SPACE = {"xyz", "lammps", "csv", "contacts", "vtkhdf", "rocrate"}
 ONE_FRAME = {"csv": (write_csv, "csv"), "contacts": (write_contacts, "contacts.csv"), "svg": (write_svg, "svg")}
 
 
 def export(options):
     """Writes the file under its name when it is whole; returns its path."""
     run = softgrain.open(options.run)
-    if options.to not in KNOW_SPACE:
-        refuse_space(run, f"softgrain export --to {options.to}")
     if options.to != "rocrate" and (options.license or options.author):
         raise ValueError("--license and --author belong to --to rocrate")
     if options.to == "rocrate":

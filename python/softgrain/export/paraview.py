@@ -1,4 +1,4 @@
-"""A scene for ParaView: grains as polygons, one series per kind of thing, and a script that shows them all."""
+"""A scene for ParaView: grains as polygons, in space by their surfaces, one series per kind of thing, and a script that shows them all."""
 
 import re
 from pathlib import Path
@@ -6,35 +6,43 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from .. import view
 from ..picture import outlines
 
 SCRIPT = Path(__file__).with_name("paraview_scene.py")
 
 
 def write_scene(run, folder):
-    """Fills `folder`: grains_*.vtp, a .pvd for each kind, scene.py. Returns the path of scene.py.
+    """Fills `folder`: grains_*.vtp (of the plane), a .pvd for each kind, scene.py. Returns the path of scene.py.
 
-    Points, contacts and walls stay where the run has written them (output.vtk)."""
+    Points, contacts, walls and surfaces in space stay where the run has written them (output.vtk)."""
     folder.mkdir(parents=True, exist_ok=True)
     snapshots = [run[i] for i in range(len(run))]
-    for kind in ("particles", "contacts", "walls"):
+    for kind in ("surfaces" if run.in_space else "particles", "contacts", "walls"):
         files = run.vtk_files(kind)
         frames = [(s.time, f"../vtk/{files[s.step].name}") for s in snapshots if s.step in files]
         if not frames:
             raise ValueError(f"{run.path} has no vtk/{kind}_*.vtp: it was run with output.vtk = false")
         (folder / f"{kind}.pvd").write_text(pvd_text(frames))
+    if not run.in_space:
+        (folder / "grains.pvd").write_text(pvd_text(_write_grains(snapshots, folder)))
+    low, high = pressure_range(snapshots)
+    text = _fill(SCRIPT.read_text(), FOLDER=f"Path({str(folder.resolve())!r})", PRESSURES=f"({low:.6g}, {high:.6g})",
+                 RADIUS=f"{chain_width(snapshots[0]):.6g}", IN_SPACE=str(run.in_space),
+                 TOWARDS=f"({', '.join(f'{x:.6g}' for x in view.directions()[2])})")
+    scene = folder / "scene.py"
+    scene.write_text(text)
+    return scene
+
+
+def _write_grains(snapshots, folder):
+    """Outlines as polygons, a file for each snapshot that has some; returns (time, name)."""
     grains, width = [], max(6, len(str(snapshots[-1].step)))
     for snapshot in snapshots:
         if snapshot.outlines:
             grains.append((snapshot.time, f"grains_{snapshot.step:0{width}}.vtp"))
             (folder / grains[-1][1]).write_text(grains_vtp(snapshot))
-    (folder / "grains.pvd").write_text(pvd_text(grains))
-    low, high = pressure_range(snapshots)
-    text = _fill(SCRIPT.read_text(), FOLDER=f"Path({str(folder.resolve())!r})", PRESSURES=f"({low:.6g}, {high:.6g})",
-                 RADIUS=f"{chain_width(snapshots[0]):.6g}")
-    scene = folder / "scene.py"
-    scene.write_text(text)
-    return scene
+    return grains
 
 
 def chain_width(snapshot):
@@ -44,7 +52,7 @@ def chain_width(snapshot):
 
 def pressure_range(snapshots):
     """One range for all frames, without the extreme 3 % on either side; (0, 1) if no pressure is recorded."""
-    pressures = [s.particles["pressure"] for s in snapshots if "pressure" in s.particles]
+    pressures = [fields["pressure"] for s in snapshots for fields in (s.particles, s.surface) if "pressure" in fields]
     return np.percentile(np.concatenate(pressures), (3, 97)) if pressures else (0, 1)
 
 

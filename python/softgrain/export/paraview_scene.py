@@ -5,12 +5,16 @@ from pathlib import Path
 from paraview.simple import (CellDatatoPointData, ColorBy, GetActiveViewOrCreate, GetAnimationScene,
                              GetColorTransferFunction, GetScalarBar, PVDReader, Render, ResetCamera, Show, Tube)
 
+IN_SPACE = False
+TOWARDS = (0, 0, 1)  # from the scene to the eye
+GLASS = 0.35  # opacity of grains, through which contacts are seen; 1: surfaces alone
+
 FOLDER = Path(".")
 PRESSURES = (0, 1)  # [Pa]
 RADIUS = 1  # [m]
 
 view = GetActiveViewOrCreate("RenderView")
-view.InteractionMode = "2D"
+view.InteractionMode = "3D" if IN_SPACE else "2D"
 view.UseColorPaletteForBackground = 0
 view.Background = [1, 1, 1]
 view.OrientationAxesVisibility = 0
@@ -30,16 +34,25 @@ def paint(display, colour):
 
 
 def show_grains():
-    """Their outlines as surfaces, behind the rest, coloured by the mean pressure of the grain."""
-    if "<DataSet" in (FOLDER / "grains.pvd").read_text():
+    """Their outlines as surfaces, behind the rest, coloured by the mean pressure of the grain; in space their surfaces, by
+    the pressure behind each of their faces."""
+    if IN_SPACE:
+        display = Show(series("surfaces"), view)
+        display.SetRepresentationType("Surface")
+        display.Opacity = GLASS
+        ColorBy(display, ("CELLS", "pressure"))
+        display.SetScalarBarVisibility(view, True)
+    elif "<DataSet" in (FOLDER / "grains.pvd").read_text():
         display = Show(series("grains"), view)
         display.SetRepresentationType("Surface With Edges")
-        display.Opacity = 0.35
+        display.Opacity = GLASS
         ColorBy(display, ("CELLS", "pressure"))
 
 
 def show_particles():
-    """As disks of their radius, coloured by their pressure."""
+    """As disks of their radius, coloured by their pressure; in space grains are shown by their surfaces alone."""
+    if IN_SPACE:
+        return
     display = Show(series("particles"), view)
     display.SetRepresentationType("Point Gaussian")
     display.SetScaleArray = ["POINTS", "radius"]
@@ -63,7 +76,9 @@ def show_legend():
 
 
 def show_contacts():
-    """Tubes between the particles, up to ten times as thick where the force is largest."""
+    """Tubes between the particles, up to ten times as thick where the force is largest. None where grains are opaque."""
+    if IN_SPACE and GLASS == 1:
+        return
     forces = CellDatatoPointData(registrationName="forces", Input=series("contacts"))
     tubes = Tube(registrationName="tubes", Input=forces)
     tubes.Scalars = ["POINTS", "force"]
@@ -71,13 +86,15 @@ def show_contacts():
     tubes.Radius = 0.05 * RADIUS
     tubes.RadiusFactor = 10
     display = Show(tubes, view)
-    display.Position = [0, 0, 2 * RADIUS]  # before the disks
+    display.Position = [0, 0, 0 if IN_SPACE else 2 * RADIUS]  # before the disks
     paint(display, [0.63, 0.11, 0.2])
 
 
 def show_walls():
     display = Show(series("walls"), view)
-    display.LineWidth = 3
+    display.LineWidth = 1 if IN_SPACE else 3
+    if IN_SPACE:
+        display.SetRepresentationType("Wireframe")
     paint(display, [0.1, 0.1, 0.1])
 
 
@@ -85,5 +102,10 @@ for show in (show_grains, show_particles, show_contacts, show_walls, show_legend
     show()
 GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
 GetAnimationScene().GoToLast()
+if IN_SPACE:
+    view.CameraParallelProjection = 1
+    view.CameraFocalPoint = [0, 0, 0]
+    view.CameraPosition = list(TOWARDS)
+    view.CameraViewUp = [0, 0, 1]
 ResetCamera(view)
 Render(view)

@@ -1,8 +1,12 @@
-"""A frame as SVG: grains coloured by pressure, force chains, walls, and a legend; scales are those of the whole run."""
+"""A frame as SVG: grains coloured by pressure, force chains, walls, and a legend; scales are those of the whole run.
+
+In space the faces that look at us, the farthest first, and no chains, which lie behind them."""
 
 from typing import NamedTuple
 
-from .. import colours, picture
+import numpy as np
+
+from .. import colours, picture, solids, view
 from ..run import NotRecorded
 
 WIDTH = 1000  # of the picture [px]
@@ -21,6 +25,10 @@ class Scale(NamedTuple):
 
 def scale_of(snapshots: list) -> Scale:
     """From frames evenly over the run."""
+    if solids.in_space(snapshots[0]):
+        snapshots = view.with_surfaces(snapshots)
+        x0, x1, y0, y1 = view.extent(snapshots)
+        return Scale(((x0, x1), (y0, y1)), colours.range_of(np.concatenate([s.surface["pressure"] for s in snapshots])), None)
     try:
         surfaces = [picture.surface(s, picture.pressure(s)).values for s in snapshots if picture.has_forces(s)]
         colour = colours.range_of([value for values in surfaces for value in values]) if surfaces else None
@@ -45,18 +53,41 @@ def write_svg(snapshot, scale, file):
 
     file.write(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height + LEGEND:.1f}">\n'
                f"<title>step {snapshot.step}, time {snapshot.time:.6g} s</title>\n")
-    file.writelines(_surface(snapshot, scale, place, pixels))
-    if _shows_chains(snapshot, scale):
-        file.writelines(_chains(picture.chains(snapshot, scale.force), _chain_colour(scale), place, pixels))
-    for wall in picture.walls(snapshot):
-        file.write(_line(place(wall), 'stroke-width="3"'))
-    for edge in picture.cell_edges(snapshot):
-        file.write(_line(place(edge), 'stroke-width="1" stroke-dasharray="6 4"'))
+    if solids.in_space(snapshot):
+        file.writelines(_faces(snapshot, scale, place))
+    else:
+        file.writelines(_plane(snapshot, scale, place, pixels))
     if scale.colour:
         file.writelines(_legend(scale.colour, MARGIN * WIDTH, height))
-    if _shows_chains(snapshot, scale):
-        file.writelines(_chain_key(scale, WIDTH * (1 - MARGIN), height, pixels))
     file.write("</svg>\n")
+
+
+def _plane(snapshot, scale, place, pixels):
+    (x0, x1), (y0, y1) = scale.box
+    height = pixels * (y1 - y0) + 2 * MARGIN * WIDTH
+    yield from _surface(snapshot, scale, place, pixels)
+    if _shows_chains(snapshot, scale):
+        yield from _chains(picture.chains(snapshot, scale.force), _chain_colour(scale), place, pixels)
+    for wall in picture.walls(snapshot):
+        yield _line(place(wall), 'stroke-width="3"')
+    for edge in picture.cell_edges(snapshot):
+        yield _line(place(edge), 'stroke-width="1" stroke-dasharray="6 4"')
+    if _shows_chains(snapshot, scale):
+        yield from _chain_key(scale, WIDTH * (1 - MARGIN), height, pixels)
+
+
+def _faces(snapshot, scale, place):
+    """Behind them the edges of a box, or both walls of a single sphere."""
+    walls = view.walls(snapshot)
+    for wall in walls:
+        if len(walls) > 2:
+            yield f'<polygon points="{_corners(place(wall))}" fill="none" stroke="#777777" stroke-width="1"/>\n'
+        else:
+            yield _polygon(place(wall), "#dddddd", "#777777")
+    faces = view.faces(snapshot)
+    colour = scale.colour.rgb(snapshot.surface["pressure"][faces.quad]) * faces.shade[:, None]
+    for polygon, fill in zip(faces.corners, colours.words_of(colour)):
+        yield _polygon(place(polygon), fill, fill)
 
 
 def _shows_chains(snapshot, scale):
@@ -87,9 +118,12 @@ def _surface(snapshot, scale, place, pixels):
             yield _polygon(place(rim), "none", colours.INK)
 
 
+def _corners(points):
+    return " ".join(f"{x:.2f},{y:.2f}" for x, y in points)
+
+
 def _polygon(points, fill, stroke):
-    corners = " ".join(f"{x:.2f},{y:.2f}" for x, y in points)
-    return f'<polygon points="{corners}" fill="{fill}" stroke="{stroke}" stroke-width="0.7"/>\n'
+    return f'<polygon points="{_corners(points)}" fill="{fill}" stroke="{stroke}" stroke-width="0.7"/>\n'
 
 
 def _chains(chains, colour, place, pixels):

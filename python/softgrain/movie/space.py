@@ -2,8 +2,9 @@
 
 from matplotlib.transforms import Bbox
 
+from .. import view
 from ..plot.layout import panel_at
-from ..plot.space import add_key, draw_surfaces, extent_in_space, range_of_pressures
+from ..plot.space import add_key, draw_surfaces, range_of_pressures
 from ..plot.style import DOUBLE_COLUMN
 from .frames import HEIGHT, PICTURE, Film
 
@@ -21,7 +22,7 @@ class FilmInSpace(Film):
         self._range = range_of_pressures(sampled)
 
     def _place_picture(self):
-        x0, x1, y0, y1 = extent_in_space([self.run[k] for k in range(len(self.run))])
+        x0, x1, y0, y1 = view.extent([self.run[k] for k in range(len(self.run))])
         scale = min(PICTURE.width / (x1 - x0), PICTURE.height / (y1 - y0))
         corner = PICTURE.x1 - scale * (x1 - x0), (PICTURE.y0 + PICTURE.y1 - scale * (y1 - y0)) / 2
         self.panel = panel_at(self.axes, (x0, x1, y0, y1), corner, scale)

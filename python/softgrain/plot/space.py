@@ -6,18 +6,12 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 
-from .. import NotRecorded, colours
+from .. import NotRecorded, colours, view
 from .stages import choose_stages
 from .style import DOUBLE_COLUMN, GREY, MM
 
 MOST_PANELS = 4
 HEADING, KEY = 9, 16  # [mm]: above the panels, right of them
-AZIMUTH, ELEVATION = np.radians(-62), np.radians(18)  # from where one looks
-LIGHT = np.array([0.35, -0.75, 0.8]) / np.linalg.norm([0.35, -0.75, 0.8])
-MARGIN = 0.01  # of the width, so that lines of edges are whole
-DARKEST = 0.35  # of a face that looks away from the light
-EDGES = ((0, 1), (1, 2), (2, 3), (3, 0))
-
 
 def draw_space(run):
     """The surfaces of all grains, by parallel projection. Raises NotRecorded where snapshots have none."""
@@ -28,7 +22,7 @@ def draw_space(run):
     if len(snapshots) > MOST_PANELS:
         snapshots = [snapshots[k] for k in np.linspace(0, len(snapshots) - 1, MOST_PANELS).round().astype(int)]
     range_ = range_of_pressures([snapshot for _, snapshot in snapshots])
-    x0, x1, y0, y1 = extent_in_space([snapshot for _, snapshot in snapshots])
+    x0, x1, y0, y1 = view.extent([snapshot for _, snapshot in snapshots])
     width = (DOUBLE_COLUMN - KEY) / len(snapshots)
     height = min(width * (y1 - y0) / (x1 - x0), 120)
     figure = Figure(figsize=(DOUBLE_COLUMN * MM, (height + HEADING) * MM))
@@ -45,20 +39,9 @@ def draw_space(run):
 
 def range_of_pressures(snapshots):
     """One range of colours [MPa] for all of them, without the outermost 1 %. Raises NotRecorded where none has surfaces."""
-    pressures = [snapshot.surface["pressure"] for snapshot in snapshots if "quad" in snapshot.surface]
-    if not pressures:
-        raise NotRecorded("no snapshot has surfaces: those are of runs with experiment.dimension = 3")
+    pressures = [snapshot.surface["pressure"] for snapshot in view.with_surfaces(snapshots)]
     low, high = np.quantile(np.concatenate(pressures) / 1e6, (0.01, 0.99))
     return colours.Range("viridis", min(0.0, low), max(high, 1e-12))
-
-
-def extent_in_space(snapshots):
-    """(x0, x1, y0, y1) [m] of all surfaces and walls, as they are seen, with a margin."""
-    points = [points for s in snapshots for points in (s.outlines["position"], s.surface["walls"].reshape(-1, 3))]
-    seen = _project(np.concatenate(points))[:, :2]
-    margin = MARGIN * np.ptp(seen[:, 0])
-    (x0, y0), (x1, y1) = seen.min(0) - margin, seen.max(0) + margin
-    return x0, x1, y0, y1
 
 
 def add_key(figure, range_, place):
@@ -69,31 +52,14 @@ def add_key(figure, range_, place):
 
 def draw_surfaces(axes, snapshot, range_, **look):
     """Faces that look at us, the farthest first; behind them the edges of the walls. look: of all collections."""
-    walls = _project(snapshot.surface["walls"].reshape(-1, 3)).reshape(-1, 4, 3)
+    walls = view.walls(snapshot)
     if len(walls) > 2:
-        axes.add_collection(LineCollection([face[list(edge), :2] for face in walls for edge in EDGES], colors=GREY, linewidths=0.4, **look))
+        axes.add_collection(LineCollection([face[list(edge)] for face in walls for edge in view.EDGES], colors=GREY, linewidths=0.4, **look))
     else:
-        axes.add_collection(PolyCollection(walls[:, :, :2], facecolors="#DDDDDD", edgecolors=GREY, linewidths=0.4, **look))
-    place = snapshot.outlines["position"][snapshot.surface["quad"]]  # (quads, 4, 3)
-    normal = np.cross(place[:, 2] - place[:, 0], place[:, 3] - place[:, 1])
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
-    seen = _project(place.reshape(-1, 3)).reshape(-1, 4, 3)
-    facing = normal @ _directions()[2] > 0
-    order = np.flatnonzero(facing)[np.argsort(seen[facing, :, 2].mean(1))]
-    shade = DARKEST + (1 - DARKEST) * np.clip(normal[order] @ LIGHT, 0, 1)
-    colour = range_.rgb(snapshot.surface["pressure"][order] / 1e6) * shade[:, None]
-    axes.add_collection(PolyCollection(seen[order, :, :2], facecolors=colour, edgecolors=colour, linewidths=0.15, **look))
-
-
-def _directions():
-    """Unit vectors to the right, upwards and towards us."""
-    right = np.array([-np.sin(AZIMUTH), np.cos(AZIMUTH), 0])
-    towards = np.array([np.cos(ELEVATION) * np.cos(AZIMUTH), np.cos(ELEVATION) * np.sin(AZIMUTH), np.sin(ELEVATION)])
-    return np.array([right, np.cross(towards, right), towards])
-
-
-def _project(points):
-    return np.asarray(points) @ _directions().T
+        axes.add_collection(PolyCollection(walls, facecolors="#DDDDDD", edgecolors=GREY, linewidths=0.4, **look))
+    faces = view.faces(snapshot)
+    colour = range_.rgb(snapshot.surface["pressure"][faces.quad] / 1e6) * faces.shade[:, None]
+    axes.add_collection(PolyCollection(faces.corners, facecolors=colour, edgecolors=colour, linewidths=0.15, **look))
 
 
 def _heading(letter, stage):
