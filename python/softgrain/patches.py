@@ -57,18 +57,50 @@ def points_on(snapshot, u, v):
     return Points(place, np.cross(along_u, along_v), np.repeat(owner, u.size))
 
 
+def gyration(snapshot):
+    """(n, 3, 3) [m^2]: second moment about the centroid over the volume, by int x_i x_j = 1/5 of the integral of x_i x_j (x . n) over
+    the surface and int x_i = 1/4 of that of x_i (x . n); R^2/5 of a sphere."""
+    x, flow, grain, grains, fullness = _on_gauss_points(snapshot)
+
+    def over_grains(values):
+        return np.stack([np.bincount(grain, flow * column, grains) for column in values.reshape(len(values), -1).T], axis=-1)
+
+    volume = np.bincount(grain, flow, grains)[:, None] / 3
+    mean = over_grains(x) / (4 * volume)
+    second = over_grains(np.einsum("pi,pj->pij", x, x)) / (5 * volume)
+    return fullness[:, None, None] ** (2 / 3) * (second.reshape(-1, 3, 3) - np.einsum("gi,gj->gij", mean, mean))
+
+
+def patch_areas(snapshot):
+    """(quads,) [m^2], by Gauss points."""
+    points, share = _gauss_points(snapshot)
+    fullness = np.array([fullness_of(count) for count in np.bincount(snapshot.surface["grain"].astype(int).ravel())])
+    area = (share * np.linalg.norm(points.normal, axis=1)).reshape(-1, 9).sum(axis=1)
+    return area * fullness[points.grain[::9]] ** (2 / 3)
+
+
+def _gauss_points(snapshot):
+    at, weight = GAUSS
+    u, v = np.meshgrid(at, at, indexing="ij")
+    points = points_on(snapshot, u.ravel(), v.ravel())
+    return points, np.tile(np.outer(weight, weight).ravel(), len(points.grain) // 9)
+
+
+def _on_gauss_points(snapshot):
+    """Places from the grains' centres, x . n times the share, grains, how many, and their fullness."""
+    points, share = _gauss_points(snapshot)
+    grains = len(snapshot.particles["position"])
+    x = points.place - snapshot.particles["position"][points.grain]
+    fullness = np.array([fullness_of(count) for count in np.bincount(snapshot.surface["grain"].astype(int).ravel(), minlength=grains)])
+    return x, share * np.einsum("pk,pk->p", x, points.normal), points.grain, grains, fullness
+
+
 def measures(snapshot):
     """Volume and area within the smooth surfaces, as the columns `phi` and `sphericity` take them: by 3 x 3 Gauss points
     of each patch, V = 1/3 sum c . n, A = sum |n|, over what the same surface has of a sphere at rest."""
-    (at, weight), grains = GAUSS, len(snapshot.particles["position"])
-    u, v = np.meshgrid(at, at, indexing="ij")
-    points = points_on(snapshot, u.ravel(), v.ravel())
-    share = np.tile(np.outer(weight, weight).ravel(), len(points.grain) // 9)
-    x = points.place - snapshot.particles["position"][points.grain]
-    volume = np.bincount(points.grain, share * np.einsum("pk,pk->p", x, points.normal) / 3, grains)
-    area = np.bincount(points.grain, share * np.linalg.norm(points.normal, axis=1), grains)
-    fullness = np.array([fullness_of(count) for count in np.bincount(snapshot.surface["grain"].astype(int).ravel(), minlength=grains)])
-    return Measures(fullness * volume, fullness ** (2 / 3) * area)
+    _, flow, grain, grains, fullness = _on_gauss_points(snapshot)
+    owner = snapshot.surface["grain"].astype(int).ravel()
+    return Measures(fullness * np.bincount(grain, flow / 3, grains), np.bincount(owner, patch_areas(snapshot), grains))
 
 
 @lru_cache

@@ -7,11 +7,12 @@ import softgrain
 
 from .. import colours
 from ..verb import carry_out
-from . import scale_of, write_contacts, write_csv, write_lammps, write_rocrate, write_svg, write_vtkhdf, write_xyz
+from . import scale_of, write_contacts, write_csv, write_grains, write_lammps, write_rocrate, write_svg, write_vtkhdf, write_xyz
 from .paraview import write_scene
 
 MOVIES = {"xyz": (write_xyz, "xyz"), "lammps": (write_lammps, "dump"), "vtkhdf": (write_vtkhdf, "vtkhdf")}  # all frames in one file
-ONE_FRAME = {"csv": (write_csv, "csv"), "contacts": (write_contacts, "contacts.csv"), "svg": (write_svg, "svg")}
+ONE_FRAME = {"csv": (write_csv, "csv"), "contacts": (write_contacts, "contacts.csv"), "grains": (write_grains, "grains.csv"),
+             "svg": (write_svg, "svg")}
 
 
 def export(options):
