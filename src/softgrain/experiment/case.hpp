@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "softgrain/geometry/outline_curve.hpp"
 #include "softgrain/lattice/contact_on.hpp"
 #include "softgrain/lattice/shape_functions.hpp"
 #include "softgrain/loading/stage.hpp"
@@ -30,7 +31,12 @@ enum class LoadingPath {
   stages,      ///< grains in a box, along stages of one's own
 };
 enum class GrainModel { bpm, mpm, rigid };         ///< bonded rigid primaries, an elastic body, a rigid one
-enum class RigidShape { disk, ellipse, polygon };  ///< of rigid grains
+enum class ShapeOfGrain {
+  disk,
+  ellipse,
+  polygon,
+  outline,  ///< of the grain's own
+};
 enum class EqualPrimaries { count, size };         ///< what the grains of a packing share
 enum class Integrator {
   backward_euler,    ///< implicit
@@ -55,9 +61,11 @@ struct Case {
   struct Grain {
     double radius = 5e-3;                 ///< R [m]
     double density = 990;                 ///< rho [kg/m^3]: the grain weighs rho pi R^2
-    RigidShape shape = RigidShape::disk;  ///< of a rigid grain; others lie in the circle of its diameter
-    double aspect = 2;                    ///< of an ellipse, long over short axis
-    int sides = 5;                        ///< of a regular polygon
+    ShapeOfGrain shape = ShapeOfGrain::disk;  ///< others than disks lie in the circle of the diameter
+    double aspect = 2;                        ///< of an ellipse, long over short axis
+    int sides = 5;                            ///< of a regular polygon
+    std::vector<OutlinePoint> outline{};      ///< of a shape of one's own, in any unit
+    double angle = 0;                         ///< by which one between two walls is turned [rad]
   } grain;
 
   struct Bpm {

@@ -6,6 +6,7 @@
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/sample.hpp"
+#include "softgrain/experiment/shape_of_case.hpp"
 
 namespace softgrain {
 namespace {
@@ -19,10 +20,10 @@ constexpr int few_grains = 300;
 Case twin_of(Case c) {
   c.bpm.primaries = std::min(c.bpm.primaries, 20);
   c.bpm.library = 1;
-  c.mpm.cells = std::min(c.mpm.cells, 4);
+  c.mpm.cells = std::min(c.mpm.cells, std::max(4, least_cells(c.grain)));
   c.sample.grains = std::min(c.sample.grains, 8);
   for (Case::Kind& kind : c.kinds) {
-    kind.cells = std::min(kind.cells, 4);
+    kind.cells = std::min(kind.cells, std::max(4, least_cells(kind.grain)));
     kind.grains = std::min(kind.grains, 4);
   }
   c.sample.packing_fraction = std::min(c.sample.packing_fraction, 0.2);

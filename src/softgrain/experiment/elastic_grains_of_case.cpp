@@ -9,11 +9,11 @@
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/kinds.hpp"
+#include "softgrain/experiment/shape_of_case.hpp"
 #include "softgrain/experiment/solid_case.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/lattice/lattice_grains.hpp"
 #include "softgrain/soft/elastic_grains.hpp"
-#include "softgrain/soft/rigid_outline.hpp"
 
 namespace softgrain {
 namespace {
@@ -36,31 +36,19 @@ SoftGrains grains_of(const Case& c, std::vector<GrainPlacement> placed) {
   return {std::move(placed), std::move(materials)};
 }
 
-Topology rigid_shape_of(const Case& c) {
-  const int vertices = 4 * c.mpm.cells;
-  switch (c.grain.shape) {
-    case RigidShape::ellipse:
-      return rigid_ellipse(c.grain.aspect, vertices);
-    case RigidShape::polygon:
-      return rigid_polygon(c.grain.sides, vertices);
-    default:
-      return rigid_disk(vertices);
-  }
-}
-
-/// The grid of each kind; elastic kinds of one resolution share it.
+/// The grid of each kind; elastic disks of one resolution share it.
 std::vector<std::shared_ptr<const Topology>> shapes_of(const Case& c) {
   std::map<int, std::shared_ptr<const Topology>> by_cells;
   std::vector<std::shared_ptr<const Topology>> shapes;
   for (int k = 0; k < kinds_of(c); ++k) {
     const Case of_kind = case_of_kind(c, k);
     const int cells = of_kind.mpm.cells;
-    if (is_rigid(of_kind)) {
-      shapes.push_back(std::make_shared<const Topology>(rigid_shape_of(of_kind)));
+    if (is_rigid(of_kind) || of_kind.grain.shape != ShapeOfGrain::disk) {
+      shapes.push_back(grain_shape_of(of_kind));
       continue;
     }
     std::shared_ptr<const Topology>& shape = by_cells[cells];
-    if (!shape) shape = std::make_shared<const Topology>(disk_grid(cells));
+    if (!shape) shape = grain_shape_of(of_kind);
     shapes.push_back(shape);
   }
   return shapes;
@@ -73,13 +61,6 @@ GrainPlacement placement(const std::shared_ptr<const Topology>& shape, const Pla
           .angle = grain.angle,
           .velocity = {},
           .kind = grain.kind};
-}
-
-/// Between walls that meet the circle through its vertices.
-Box<2> box_of_grain(const Case& c, const Topology& shape) {
-  double reach = 0;
-  for (const Vec<2>& X : shape.grid.outline()) reach = std::max(reach, norm(X) * c.grain.radius);
-  return walls_at(-reach, reach);
 }
 
 /// Of Newton's method, so that what it leaves of a stress that is kept is small.
@@ -182,9 +163,9 @@ double longest_time_step(const Case& c) {
     const double radius = !is_in_a_box(of_kind)           ? of_kind.grain.radius
                           : of_kind.sample.placed.empty() ? diameter_law(of_kind.sample).least() / 2
                                                           : of_kind.sample.smallest_diameter / 2;
-    const auto shape = std::make_shared<const Topology>(disk_grid(of_kind.mpm.cells));
     return longest_stable_step(
-        grains_of(of_kind, {placement(shape, {.centre = {}, .radius = radius, .angle = 0})}), damping_share);
+        grains_of(of_kind, {placement(grain_shape_of(of_kind), {.centre = {}, .radius = radius, .angle = 0})}),
+        damping_share);
   };
   return least_of_kinds(c, longest);
 }
@@ -209,8 +190,9 @@ PlacedModel elastic_grains_of(const Case& c) {
     for (const PlacedGrain& grain : sample.grains) placed.push_back(placement(shapes[grain.kind], grain));
     box = box_of(sample);
   } else {
-    placed.push_back(placement(shapes[0], {.centre = {}, .radius = c.grain.radius, .angle = 0}));
-    box = box_of_grain(c, *shapes[0]);
+    placed.push_back(placement(shapes[0], {.centre = {}, .radius = c.grain.radius, .angle = angle_between_walls(c)}));
+    const auto [low, high] = between_walls(c);
+    box = walls_at(low, high);
   }
   double smallest = placed.front().radius;
   for (const GrainPlacement& grain : placed) smallest = std::min(smallest, grain.radius);

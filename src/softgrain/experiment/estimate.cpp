@@ -7,6 +7,7 @@
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/sample.hpp"
+#include "softgrain/experiment/shape_of_case.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/material/any_law.hpp"
 
@@ -46,14 +47,6 @@ double grain_area(const Case& c) {
   if (c.sample.sizes == SizeLaw::uniform)  // in the digits that snapshots have always had
     return c.sample.grains * std::numbers::pi / 12 * (a * a + a * b + b * b);
   return c.sample.grains * std::numbers::pi / 4 * mean_square_diameter(diameter_law(c.sample));
-}
-
-/// Of a grain over that of the circle of its diameter.
-double area_share(const Case& kind) {
-  if (!is_rigid(kind)) return 1;
-  if (kind.grain.shape == RigidShape::ellipse) return 1 / kind.grain.aspect;
-  const double turn = 2 * std::numbers::pi / kind.grain.sides;
-  return kind.grain.shape == RigidShape::polygon ? std::sin(turn) / turn : 1;
 }
 
 /// Of the circles of the grains of a kind [m^2], about: placed ones know only how many they are.
@@ -122,7 +115,7 @@ double first_time_step(const Case& c) {
   if (is_implicit(c) || is_rigid(c)) return implicit_time_step(c, smallest_radius(c));
   if (!c.kinds.empty()) return least_of_kinds(c, first_time_step);
   // a share of the time in which a pressure wave crosses a cell; pi R^2 = 3.5 cells^2 h^2
-  const double cell = smallest_radius(c) * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;
+  const double cell = smallest_radius(c) * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells * cell_share(c);
   return (is_updated_lagrangian(c) ? 0.2 : 0.26) * cell / std::sqrt(wave_modulus(c) / c.grain.density);
 }
 

@@ -14,7 +14,8 @@ Case case_of_kind(Case c, int k) {
              .density = kind.grain.density,
              .shape = kind.grain.shape,
              .aspect = kind.grain.aspect,
-             .sides = kind.grain.sides};
+             .sides = kind.grain.sides,
+             .outline = kind.grain.outline};
   c.mpm.law = kind.law;
   c.mpm.material = kind.material;
   c.mpm.cells = kind.cells;

@@ -37,7 +37,7 @@ std::string not_yet_in_space(const Case& c) {
     return not_yet("adhesion", "leave contact.surface_energy and contact.wall_surface_energy out");
   for (int k = 0; k < kinds_of(c); ++k) {
     const Case kind = case_of_kind(c, k);
-    if (kind.grain.shape != RigidShape::disk)
+    if (kind.grain.shape != ShapeOfGrain::disk)
       return not_yet("grains other than spheres", "leave the shape out");
     if (!is_rigid(kind) && law_choice(kind.mpm.law).flows() && kind.mpm.material.kinematic_modulus > 0)
       return not_yet("mpm.kinematic_modulus", "leave it out, and let mpm.hardening_modulus harden alone");

@@ -6,6 +6,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/estimate.hpp"
+#include "softgrain/experiment/shape_of_case.hpp"
 
 namespace softgrain {
 namespace {
@@ -185,6 +186,13 @@ double speed_of(const Drive& drive, double length) {
   return 0;
 }
 
+/// Of one grain between two walls [m].
+double height_of_grain(const Case& c) {
+  if (c.grain.shape == ShapeOfGrain::disk) return 2 * c.grain.radius;
+  const auto [low, high] = between_walls(c);
+  return high - low;
+}
+
 }  // namespace
 
 LoadingFrame frame_of(const Case& c) {
@@ -195,7 +203,7 @@ LoadingFrame frame_of(const Case& c) {
       .aspect_y = is_in_space(c) && !c.sample.placed.empty() ? c.box.depth / c.box.height : c.sample.aspect,
       .packing_fraction = first_packing_fraction(c),
       .dimension = c.experiment.dimension};
-  if (!is_in_a_box(c)) frame.measure = {StrainMeasure::Kind::of_grain, 2 * c.grain.radius};
+  if (!is_in_a_box(c)) frame.measure = {StrainMeasure::Kind::of_grain, height_of_grain(c)};
   return frame;
 }
 

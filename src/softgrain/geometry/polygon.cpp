@@ -50,16 +50,24 @@ Vec<2> polygon_centroid(std::span<const Vec<2>> vertices) {
   return (1 / polygon_area(vertices)) * moment;
 }
 
+bool edges_meet(std::span<const Vec<2>> vertices, int i, int j) {
+  const int n = static_cast<int>(vertices.size());
+  const auto at = [&](int k) { return vertices[static_cast<std::size_t>(k % n)]; };
+  const auto run_back = [&](int k) {  // on the edge before, or without a length
+    const Vec<2> before = at(k) - at(k + n - 1), after = at(k + 1) - at(k);
+    return cross_z(before, after) == 0 && dot(before, after) <= 0;
+  };
+  if ((i + 1) % n == j) return run_back(j);
+  if ((j + 1) % n == i) return run_back(i);
+  return segments_meet(at(i), at(i + 1), at(j), at(j + 1));
+}
+
 bool is_simple_polygon(std::span<const Vec<2>> vertices) {
-  const std::size_t n = vertices.size();
+  const int n = static_cast<int>(vertices.size());
   if (n < 3) return false;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (vertices[i] == next_of(vertices, i)) return false;
-    for (std::size_t j = i + 2; j < n; ++j) {
-      if (i == 0 && j == n - 1) continue;  // neighbours
-      if (segments_meet(vertices[i], next_of(vertices, i), vertices[j], next_of(vertices, j))) return false;
-    }
-  }
+  for (int i = 0; i < n; ++i)
+    for (int j = i + 1; j < n; ++j)
+      if (edges_meet(vertices, i, j)) return false;
   return true;
 }
 

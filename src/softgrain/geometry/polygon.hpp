@@ -15,7 +15,10 @@ double polygon_perimeter(std::span<const Vec<2>> vertices);
 /// Centre of area [m].
 Vec<2> polygon_centroid(std::span<const Vec<2>> vertices);
 
-/// True if no two edges cross or touch, neighbours apart. O(n^2): for outlines given by users.
+/// Do the edges from the vertices i and j cross or touch? Neighbours do where one runs back on the other.
+bool edges_meet(std::span<const Vec<2>> vertices, int i, int j);
+
+/// True if no two edges meet so. O(n^2): for outlines given by users.
 bool is_simple_polygon(std::span<const Vec<2>> vertices);
 
 /// `count` points along the outline, about equally spaced, every vertex of the polygon among them (so count

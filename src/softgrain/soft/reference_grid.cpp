@@ -143,19 +143,36 @@ ReferenceGrid disk_grid(int n) {
   return grid;
 }
 
+ReferenceGrid outline_grid(std::span<const Vec<2>> outline, int n) {
+  ReferenceGrid grid = disk_grid(n);
+  require(static_cast<int>(outline.size()) == grid.outline_nodes(),
+          "the outline of a grid of {} cells has {} vertices, not {}", n, grid.outline_nodes(), outline.size());
+  map_to_outline(grid, outline);
+  grid.fullness = 1;
+  return grid;
+}
+
+std::optional<Vec<2>> folded_cell(const ReferenceGrid& grid) {
+  const std::vector<MaterialPoint> points = material_points(grid);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    if (points[p].volume > 0) continue;
+    Vec<2> centre;
+    for (const int node : grid.cell[p / 4]) centre += 0.25 * grid.node[node];
+    return centre;
+  }
+  return std::nullopt;
+}
+
 ReferenceGrid polygon_grid(std::span<const Vec<2>> vertices, int n) {
   require(is_simple_polygon(vertices), "the outline of {} vertices crosses or touches itself",
           vertices.size());
   std::vector<Vec<2>> ordered(vertices.begin(), vertices.end());
   if (polygon_area(ordered) < 0) std::reverse(ordered.begin(), ordered.end());
-  ReferenceGrid grid = disk_grid(n);
-  map_to_outline(grid, resample_polygon(ordered, 4 * n));
-  grid.fullness = 1;
-  for (const MaterialPoint& point : material_points(grid))
-    require(point.volume > 0,
-            "the outline of {} vertices is so concave that a cell of its grid folds; use more cells or a "
-            "rounder outline",
-            vertices.size());
+  ReferenceGrid grid = outline_grid(resample_polygon(ordered, 4 * n), n);
+  require(!folded_cell(grid),
+          "the outline of {} vertices is so concave that a cell of its grid folds; use more cells or a "
+          "rounder outline",
+          vertices.size());
   return grid;
 }
 

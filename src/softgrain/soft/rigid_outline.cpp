@@ -54,4 +54,19 @@ Topology rigid_polygon(int sides, int vertices) {
   return {std::move(grid), area / 2 * (1 - sine * sine * 2 / 3), std::move(corner)};
 }
 
+Topology rigid_outline(const OutlineCurve& curve, int vertices) {
+  require_vertices(vertices);
+  const double unit = 1 / curve.reach(), area = curve.area() * unit * unit;
+  ReferenceGrid grid{.node = {{0, 0}}, .cell = {}, .outline_begin = 1};
+  std::vector<char> corner;
+  for (const OutlinePoint& point : curve.sample(vertices)) {
+    grid.node.push_back(unit * (point.x - curve.centroid()));
+    corner.push_back(point.corner ? 1 : 0);
+  }
+  grid.fullness = area / polygon_area(grid.outline());
+  Topology shape(std::move(grid), curve.moment() * std::pow(unit, 4), corner);
+  shape.arc = arcs_between(shape.grid.outline(), corner);
+  return shape;
+}
+
 }  // namespace softgrain

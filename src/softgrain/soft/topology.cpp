@@ -16,6 +16,9 @@ constexpr double straight_turn = 1;
 /// arc.
 constexpr double corner_turn = 2;
 
+/// Below this a vertex lies on a straight side [rad].
+constexpr double least_turn = 1e-6;
+
 BlockPattern pattern_of(const ReferenceGrid& grid) {
   if (grid.cell.empty()) return {0, {}, 0};
   std::vector<std::array<int, 2>> edges;
@@ -40,8 +43,8 @@ CellShape shape_of(std::span<const MaterialPoint, 4> points) {
   return shape;
 }
 
-/// The arcs of a closed outline, counter-clockwise.
-std::vector<OutlineArc> arcs_of(std::span<const Vec<2>> outline) {
+/// By how much a closed outline turns at each vertex.
+std::vector<double> turns_of(std::span<const Vec<2>> outline) {
   const std::size_t n = outline.size();
   const auto at = [&](std::size_t v) { return outline[v % n]; };
   std::vector<double> turn;
@@ -49,12 +52,24 @@ std::vector<OutlineArc> arcs_of(std::span<const Vec<2>> outline) {
     const Vec<2> before = at(v) - at(v + n - 1), after = at(v + 1) - at(v);
     turn.push_back(std::atan2(-dot(before, perpendicular(after)), dot(before, after)));
   }
+  return turn;
+}
+
+OutlineArc arc_of(std::span<const Vec<2>> outline, std::size_t v, double turn) {
+  const std::size_t n = outline.size();
+  const double l = norm(outline[(v + 1) % n] - outline[(v + n - 1) % n]) / 2;
+  return {.half_chord = l, .radius = l / std::sin(turn), .end_sine = std::sin(turn / 2)};
+}
+
+/// The arcs of a closed outline, counter-clockwise, whose corners show by its turns alone.
+std::vector<OutlineArc> arcs_of(std::span<const Vec<2>> outline) {
+  const std::size_t n = outline.size();
+  const std::vector<double> turn = turns_of(outline);
   std::vector<OutlineArc> arcs(n);
   for (std::size_t v = 0; v < n; ++v) {
     const double beside = std::min(turn[(v + n - 1) % n], turn[(v + 1) % n]);
     if (turn[v] < straight_turn / static_cast<double>(n) || turn[v] > corner_turn * beside) continue;
-    const double l = norm(at(v + 1) - at(v + n - 1)) / 2;
-    arcs[v] = {.half_chord = l, .radius = l / std::sin(turn[v]), .end_sine = std::sin(turn[v] / 2)};
+    arcs[v] = arc_of(outline, v, turn[v]);
   }
   return arcs;
 }
@@ -71,6 +86,14 @@ bool is_round(std::span<const Vec<2>> outline) {
 }
 
 }  // namespace
+
+std::vector<OutlineArc> arcs_between(std::span<const Vec<2>> outline, std::span<const char> corner) {
+  const std::vector<double> turn = turns_of(outline);
+  std::vector<OutlineArc> arcs(outline.size());
+  for (std::size_t v = 0; v < outline.size(); ++v)
+    if (corner[v] == 0 && turn[v] > least_turn) arcs[v] = arc_of(outline, v, turn[v]);
+  return arcs;
+}
 
 Topology::Topology(ReferenceGrid reference_grid)
     : grid(std::move(reference_grid)),
@@ -90,6 +113,29 @@ Topology::Topology(ReferenceGrid reference_grid)
       for (int b = 0; b <= a; ++b)
         cell_blocks.push_back(
             {pattern.block(cell[a], cell[b]), a != b && pattern.transposed(cell[a], cell[b])});
+}
+
+Topology::Topology(ReferenceGrid reference_grid, std::vector<char> corners)
+    : Topology(std::move(reference_grid)) {
+  corner = std::move(corners);
+  arc = arcs_between(grid.outline(), corner);
+}
+
+double reach_of(const Topology& shape, const Vec<2>& direction) {
+  const std::span<const Vec<2>> X = shape.grid.outline();
+  const std::size_t n = X.size();
+  double reach = dot(X[0], direction);
+  for (std::size_t v = 0; v < n; ++v) {
+    double of_vertex = dot(X[v], direction);
+    if (const OutlineArc& arc = shape.arc[v]; arc.end_sine > 0) {
+      const double s = dot(X[(v + 1) % n] - X[(v + n - 1) % n], direction) / 2;
+      const double sine = std::clamp(s / arc.half_chord, -arc.end_sine, arc.end_sine);
+      const double cosine = std::sqrt(1 - sine * sine);
+      of_vertex += arc.radius * (sine / arc.half_chord * s / cosine - (1 / cosine - 1));
+    }
+    reach = std::max(reach, of_vertex);
+  }
+  return reach;
 }
 
 Topology::Topology(ReferenceGrid outline, double moment, std::vector<char> corners)

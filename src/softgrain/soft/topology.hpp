@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <span>
 #include <vector>
 
 #include "softgrain/math/block_cholesky.hpp"
@@ -31,10 +32,17 @@ struct OutlineArc {
       0;  ///< sin(turn/2); 0 where the outline is straight, concave or has a corner: the vertex alone
 };
 
+/// The arcs of a closed outline, counter-clockwise, whose corners are known (not 0): all else that is convex
+/// has one.
+std::vector<OutlineArc> arcs_between(std::span<const Vec<2>> outline, std::span<const char> corner);
+
 /// All that grains of one shape share, in units of their radius: made once, never changed.
 struct Topology {
   /// Takes over the grid; finds points, volumes, and the symbolic factorisation with the outline last.
   explicit Topology(ReferenceGrid reference_grid);
+  /// With the outline's corners known: 1 at each vertex where there is one. There the curve ends, and all
+  /// else that is convex has an arc.
+  Topology(ReferenceGrid reference_grid, std::vector<char> corners);
   /// Of a rigid grain: a grid without cells, whose node 0 is the centre of mass at the origin and whose other
   /// nodes are the outline. Its nodes carry the grain's mass and its moment of inertia, those of the outline
   /// equal shares: moment is the integral of |X|^2 over the body [R^4].
@@ -55,5 +63,9 @@ struct Topology {
   std::vector<CellBlock>
       cell_blocks;  ///< (10 cells): the pairs (a, b), b <= a, of the four nodes of each cell
 };
+
+/// How far the undeformed outline with its arcs reaches from the origin in a direction of length 1 [R]: its
+/// support function, as walls see it.
+double reach_of(const Topology& shape, const Vec<2>& direction);
 
 }  // namespace softgrain

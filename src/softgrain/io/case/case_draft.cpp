@@ -4,6 +4,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/io/case/case_value.hpp"
+#include "softgrain/io/case/outline_file.hpp"
 
 namespace softgrain {
 
@@ -24,7 +25,9 @@ void CaseDraft::give(const Key& key, const std::string& name, const TomlValue& v
   try {
     Key named = key;
     named.name = name;
-    assign(the_case, named, value);
+    const auto* file = std::get_if<std::string>(&value.content);
+    const bool names_a_file = file != nullptr && key.name == "grain.outline" && sources != nullptr;
+    assign(the_case, named, names_a_file ? outline_of_file(*file, origin, *this) : value);
   } catch (const UsageError& error) {
     if (value.at.line > 0) origin.at = value.at;
     add(origin, error.what());

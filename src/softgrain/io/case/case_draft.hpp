@@ -23,6 +23,13 @@ class CaseDraft {
   std::vector<std::string> notes;         ///< what to write instead of an old spelling
   std::vector<Issue> issues;
 
+  std::vector<Source>* sources = nullptr;  ///< files that were read; more may follow
+  /// Of an outline that came from one of them: which, and the line of each point.
+  struct OutlineLines {
+    int source = 0;
+    std::vector<int> lines;
+  } outline{};
+
   void add(Origin origin, std::string message);
 
   /// A value for a key of the schema, which the user calls `name`. Raises nothing: what is wrong is an issue,

@@ -16,6 +16,7 @@
 #include "softgrain/io/case/case_relations.hpp"
 #include "softgrain/io/case/case_value.hpp"
 #include "softgrain/io/case/form_reader.hpp"
+#include "softgrain/io/case/outline_file.hpp"
 #include "softgrain/io/case/placement.hpp"
 #include "softgrain/io/case/schema.hpp"
 #include "softgrain/io/case/suggest.hpp"
@@ -29,13 +30,16 @@ namespace {
 class CaseReader {
  public:
   CaseReader(std::string_view text, const std::string& name, const std::vector<std::string>& sets)
-      : sources_{{name, std::string(text)}}, sets_(sets) {}
+      : sources_{{name, std::string(text)}}, sets_(sets) {
+    draft_.sources = &sources_;
+  }
 
   CaseReading read(bool is_to_run = true) {
     try {
       read_file_text();
       forms_.finish_file();
       for (std::size_t i = 0; i < sets_.size(); ++i) read_set(static_cast<int>(i));
+      forms_.imply_shape();
       settle_time_step();
       set_defaults_of_space(draft_.the_case, [&](const char* key) { return draft_.origins.contains(key); });
       forms_.finish_stages();
@@ -43,6 +47,8 @@ class CaseReader {
       const PlacedLines lines = place_grains(forms_, draft_, sources_);
       check_heights(draft_);
       forms_.finish_kinds();
+      if (draft_.the_case.kinds.empty()) check_outline(draft_);
+      if (!draft_.is_valid("grain.outline")) throw CaseFileError(report(draft_.issues, sources_, sets_));
       draft_.the_case = complete_sample(draft_.the_case);
       pour_grains();
       take_quasi_static_speeds();

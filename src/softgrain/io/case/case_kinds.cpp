@@ -36,10 +36,11 @@ bool is_of_shape(const std::string& key) {
   return key == "grain.shape" || key == "grain.aspect" || key == "grain.sides";
 }
 
-/// Does a kind have such a key? All elastic ones have the same.
+/// Does a kind have such a key?
 bool is_written(const Case& kind, const std::string& key) {
+  if (key == "grain.outline") return kind.grain.shape == ShapeOfGrain::outline;
   if (is_rigid(kind)) return !key.starts_with("mpm.") || key == "mpm.cells";
-  return !is_of_shape(key);
+  return !is_of_shape(key) || kind.grain.shape != ShapeOfGrain::disk;
 }
 
 /// visit(name, value) of all keys of the k-th kind. Of placed grains their places say number and diameters.

@@ -40,6 +40,9 @@ Json value_schema(const Key& key) {
     return {{"type", "array"}, {"items", number_schema(key)}};
   if (std::holds_alternative<MemberOf<std::vector<PlacedGrain>>>(key.member))
     return {{"type", "array"}, {"items", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
+  if (std::holds_alternative<MemberOf<std::vector<OutlinePoint>>>(key.member))
+    return {{"anyOf", Json::array({{{"type", "string"}},
+                                   {{"type", "array"}, {"items", {{"type", "array"}, {"items", {{"type", "number"}}}}}}})}};
   Json whole{{"type", "integer"}};
   add_bounds(whole, key.range);
   return whole;

@@ -102,6 +102,19 @@ PlacedGrain read_grain(const Key& key, const TomlValue& value) {
           .kind = static_cast<int>(numbers[4])};
 }
 
+/// [x, y], or with a 1 at a corner.
+OutlinePoint read_outline_point(const Key& key, const TomlValue& value) {
+  const auto* items = std::get_if<TomlValue::Array>(&value.content);
+  std::vector<double> numbers;
+  if (items != nullptr)
+    for (const TomlValue& item : *items) numbers.push_back(read_number(key, item));
+  if (numbers.size() == 2) numbers.push_back(0);
+  require(numbers.size() == 3 && (numbers[2] == 0 || numbers[2] == 1),
+          "{} takes two numbers for each point, [x, y], and a third at a corner, 1; got {}", key.name,
+          items == nullptr ? shown(value) : fmt::format("[{}]", fmt::join(numbers, ", ")));
+  return {{numbers[0], numbers[1]}, numbers[2] == 1};
+}
+
 struct Assign {
   Case& the_case;
   const Key& key;
@@ -130,6 +143,14 @@ struct Assign {
     std::vector<PlacedGrain> grains;
     for (const TomlValue& item : *items) grains.push_back(read_grain(key, item));
     member(the_case) = std::move(grains);
+  }
+  void operator()(MemberOf<std::vector<OutlinePoint>> member) const {
+    const auto* items = std::get_if<TomlValue::Array>(&value.content);
+    if (items == nullptr) wrong_type(key, value);
+    std::vector<OutlinePoint> points;
+    for (const TomlValue& item : *items) points.push_back(read_outline_point(key, item));
+    if (!points.empty()) OutlineCurve{points};  // raises what is wrong with it
+    member(the_case) = std::move(points);
   }
   void operator()(MemberOf<std::vector<double>> member) const {
     const auto* items = std::get_if<TomlValue::Array>(&value.content);
@@ -187,6 +208,12 @@ std::string text_of(const Case& the_case, const Key& key, const WriteNumber& wri
                         write_number(grain.centre[1]), write_number(grain.radius), write_number(grain.angle),
                         grain.kind == 0 ? "" : fmt::format(", {}", grain.kind));
       return fmt::format("[{}{}]", list, list.empty() ? "" : "\n");
+    } else if constexpr (std::is_same_v<T, std::vector<OutlinePoint>>) {
+      std::string list;
+      for (const OutlinePoint& point : value)
+        list += fmt::format("{}\n  [{}, {}{}]", list.empty() ? "" : ",", write_number(point.x[0]),
+                            write_number(point.x[1]), point.corner ? ", 1" : "");
+      return fmt::format("[{}{}]", list, list.empty() ? "" : "\n");
     } else if constexpr (std::is_same_v<T, std::string_view>) {
       return fmt::format("\"{}\"", value);
     } else {
@@ -210,6 +237,8 @@ std::string kind_in_words(const Key& key) {
     return (key.zero_word.empty() ? "" : fmt::format("\"{}\" or ", key.zero_word)) +
            in_words(parse_unit(key.unit).dimension);
   if (std::holds_alternative<MemberOf<std::vector<PlacedGrain>>>(key.member)) return "a list of grains";
+  if (std::holds_alternative<MemberOf<std::vector<OutlinePoint>>>(key.member))
+    return "the name of a file or a list of points";
   if (!std::holds_alternative<MemberOf<std::vector<double>>>(key.member)) return "a whole number";
   return key.unit.empty() ? "a list of plain numbers"
                           : fmt::format("a list, each {}", in_words(parse_unit(key.unit).dimension));

@@ -267,6 +267,11 @@ void FormReader::imply_law_of_sizes() {
     draft_.the_case.sample.sizes = SizeLaw::lognormal;
 }
 
+void FormReader::imply_shape() {
+  Case::Grain& grain = draft_.the_case.grain;
+  if (!draft_.origins.contains("grain.shape") && !grain.outline.empty()) grain.shape = ShapeOfGrain::outline;
+}
+
 void FormReader::finish_file() {
   imply_law_of_sizes();
   for (const auto& [table, at] : pairs_) read_pair(table, at);

@@ -23,6 +23,8 @@ class FormReader {
   /// A key of a form in an ordinary table or a --set; false if there is none of this name.
   bool read_key(const std::string& name, const TomlValue& value, Origin origin);
 
+  /// A shape of one's own where an outline is given, and no word of it is said.
+  void imply_shape();
   /// What needs the whole file: pairs.
   void finish_file();
   /// What the tables [[stage]] say, when all else of the case is known.

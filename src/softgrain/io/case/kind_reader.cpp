@@ -10,6 +10,7 @@
 #include "softgrain/io/case/case_relations.hpp"
 #include "softgrain/io/case/case_value.hpp"
 #include "softgrain/io/case/form_reader.hpp"
+#include "softgrain/io/case/outline_file.hpp"
 #include "softgrain/io/case/suggest.hpp"
 #include "softgrain/io/case/words.hpp"
 
@@ -100,6 +101,8 @@ void FormReader::add_pair(int walls, const std::vector<std::string>& sides, cons
 void FormReader::finish_kind(KindText& text) {
   CaseDraft draft;
   draft.the_case = draft_.the_case;
+  draft.sources = draft_.sources;
+  draft.outline = draft_.outline;
   draft.the_case.kinds.clear();
   FormReader reader(draft);
   const bool placed = !draft_.the_case.sample.placed.empty();
@@ -115,6 +118,7 @@ void FormReader::finish_kind(KindText& text) {
     text.has_number = text.has_number || form->name == "kind.number";
   }
   reader.imply_law_of_sizes();
+  reader.imply_shape();
   for (const Relation& relation : case_relations()) {
     if (!draft.issues.empty() || !std::ranges::all_of(relation.keys, is_key_of_kind)) continue;
     const std::string message = relation.broken(draft.the_case);
@@ -123,6 +127,8 @@ void FormReader::finish_kind(KindText& text) {
       if (draft.origins.contains(key)) at = std::max(at, draft.origins[key]);
     if (!message.empty()) draft.add(at, fmt::format("kind '{}': {}", text.name, message));
   }
+  if (draft.issues.empty()) check_outline(draft);
+  if (!draft.is_valid("grain.outline")) draft_.invalid.insert("grain.outline");
   std::vector<std::string> in_vain;
   for (const auto& [name, origin] : draft.origins) {
     const Key& key = *find_key(name);

@@ -66,12 +66,13 @@ PlacedLines place_grains(const FormReader& forms, CaseDraft& draft, std::vector<
   }
   SampleText text =
       read_sample_text(sources.back().text, forms.kind_names(), draft.the_case.experiment.dimension);
-  for (const SampleIssue& issue : text.issues) draft.add({.at = issue.at, .source = 1}, issue.message);
+  const int source = static_cast<int>(sources.size()) - 1;
+  for (const SampleIssue& issue : text.issues) draft.add({.at = issue.at, .source = source}, issue.message);
   sample.placed = std::move(text.grains);
   sample.placed_z = std::move(text.z);
   draft.origins["sample.placed"] = origin;
   if (!text.issues.empty()) draft.invalid.insert("sample.placed");
-  return text.lines;
+  return {text.lines, source};
 }
 
 void check_heights(CaseDraft& draft) {
@@ -94,13 +95,14 @@ void check_placement(CaseDraft& draft, const PlacedLines& lines) {
       is_in_space(c) ? misplaced_grains(sample_solid_box(c)) : misplaced_grains(sample_box(c));
   if (faults.size() > most) faults.resize(most);
   for (const Misplaced& fault : faults) {
-    if (lines.empty())
+    if (lines.line.empty())
       draft.add(draft.origins["sample.placed"],
                 fmt::format("grain {}: {}", fault.grain + 1,
                             fault_in_words(c, fault, fmt::format("number {}", fault.other + 1))));
     else
-      draft.add({.at = {lines[fault.grain], 1}, .source = 1},
-                fault_in_words(c, fault, fault.other < 0 ? "" : fmt::format("line {}", lines[fault.other])));
+      draft.add({.at = {lines.line[fault.grain], 1}, .source = lines.source},
+                fault_in_words(c, fault,
+                               fault.other < 0 ? "" : fmt::format("line {}", lines.line[fault.other])));
   }
 }
 

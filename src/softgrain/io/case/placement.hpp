@@ -8,7 +8,10 @@
 namespace softgrain {
 
 /// The lines of a sample's file in which its grains stand; none where the grains come from the case file.
-using PlacedLines = std::vector<int>;
+struct PlacedLines {
+  std::vector<int> line;
+  int source = 0;  ///< the sample's file among the sources
+};
 
 /// All that can be read of a file of at most 1 MB; UsageError otherwise. `what`: "a case file".
 std::string read_limited(const std::string& path, const char* what);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/io/case/csv_cells.hpp"
 #include "softgrain/io/case/suggest.hpp"
 #include "softgrain/io/case/units.hpp"
 
@@ -14,34 +15,6 @@ namespace {
 constexpr std::size_t most_issues = 20;
 const std::vector<std::string> column_names{"x", "y", "radius", "angle", "kind", "z"};
 enum Column { x, y, radius, angle, kind, z };
-
-struct Cell {
-  std::string_view text;  // without blanks around it
-  int column = 1;         // where it begins in its line, in characters
-};
-
-int characters(std::string_view text) {
-  return static_cast<int>(std::ranges::count_if(
-      text, [](char letter) { return (static_cast<unsigned char>(letter) & 0xC0u) != 0x80u; }));
-}
-
-std::string_view without_blanks(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") + 1 - first);
-}
-
-std::vector<Cell> cells_of(std::string_view line) {
-  std::vector<Cell> cells;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    const std::string_view cell = line.substr(begin, end - begin), text = without_blanks(cell);
-    const std::size_t start = text.empty() ? begin : static_cast<std::size_t>(text.data() - line.data());
-    cells.push_back({text, 1 + characters(line.substr(0, start))});
-    begin = end + 1;
-  }
-  return cells;
-}
 
 /// One column of the file: which it is, and the unit of its numbers.
 struct ColumnOfFile {
@@ -56,21 +29,16 @@ class Reader {
   Reader(const std::vector<std::string>& kinds, int dimension) : kinds_(kinds), is_solid_(dimension == 3) {}
 
   SampleText read(std::string_view text) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // with which spreadsheets begin
-    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
-    for (; !text.empty() && result_.issues.size() < most_issues; ++line_) {
-      std::string_view line = text.substr(0, text.find('\n'));
-      text.remove_prefix(std::min(text.size(), line.size() + 1));
-      if (line.ends_with('\r')) line.remove_suffix(1);
-      const std::string_view content = without_blanks(line);
-      if (content.empty() || content.front() == '#') continue;
+    for_each_csv_line(text, [&](int number, std::string_view line) {
+      line_ = number;
       if (!is_printable(line))
         add(1, "not text: a sample's file is UTF-8 without control characters");
       else if (columns_.empty())
         read_header(line);
       else if (!has_header_issue_)
         read_grain(line);
-    }
+      return result_.issues.size() < most_issues;
+    });
     if (result_.grains.empty() && result_.issues.empty())
       add(1, fmt::format("no grains: a line for each, under the line of columns {}", example()));
     return std::move(result_);
@@ -87,7 +55,7 @@ class Reader {
 
   void read_header(std::string_view line) {
     const std::size_t before = result_.issues.size();
-    for (const Cell& cell : cells_of(line)) read_column(cell);
+    for (const CsvCell& cell : csv_cells(line)) read_column(cell);
     for (const Column needed : {x, y, z, radius})
       if ((needed != z || is_solid_) &&
           std::ranges::find(columns_, needed, &ColumnOfFile::column) == columns_.end() &&
@@ -103,7 +71,7 @@ class Reader {
   }
 
   /// "radius [mm]".
-  void read_column(const Cell& cell) {
+  void read_column(const CsvCell& cell) {
     const std::size_t bracket = cell.text.find('[');
     const std::string name{without_blanks(cell.text.substr(0, bracket))};
     const auto found = std::ranges::find(column_names, name);
@@ -133,7 +101,7 @@ class Reader {
   }
 
   void read_grain(std::string_view line) {
-    const std::vector<Cell> cells = cells_of(line);
+    const std::vector<CsvCell> cells = csv_cells(line);
     if (cells.size() != columns_.size())
       return add(1, fmt::format("{} values, but {} columns: numbers have a decimal point, and commas stand "
                                 "between them",
@@ -151,7 +119,7 @@ class Reader {
     result_.lines.push_back(line_);
   }
 
-  bool read_cell(const Cell& cell, const ColumnOfFile& column, PlacedGrain& grain, double& height) {
+  bool read_cell(const CsvCell& cell, const ColumnOfFile& column, PlacedGrain& grain, double& height) {
     const std::string& name = column_names[column.column];
     if (column.column == kind) return read_kind(cell, grain);
     double value = 0;
@@ -174,7 +142,7 @@ class Reader {
     return true;
   }
 
-  bool read_kind(const Cell& cell, PlacedGrain& grain) {
+  bool read_kind(const CsvCell& cell, PlacedGrain& grain) {
     if (kinds_.size() == 1 && kinds_.front().empty()) kinds_.front() = cell.text;
     const auto found = std::ranges::find(kinds_, cell.text);
     grain.kind = static_cast<int>(found - kinds_.begin());

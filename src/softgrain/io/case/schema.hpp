@@ -34,7 +34,8 @@ struct WordMember {
   std::string_view operator()(const Case& c) const { return word(c); }
 };
 using Member = std::variant<MemberOf<bool>, MemberOf<int>, MemberOf<std::int64_t>, MemberOf<double>,
-                            WordMember, MemberOf<std::vector<double>>, MemberOf<std::vector<PlacedGrain>>>;
+                            WordMember, MemberOf<std::vector<double>>, MemberOf<std::vector<PlacedGrain>>,
+                            MemberOf<std::vector<OutlinePoint>>>;
 
 /// One key of a case file. Its default is the value in Case{}.
 struct Key {

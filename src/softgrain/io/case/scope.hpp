@@ -27,11 +27,16 @@ inline constexpr Scope everywhere{"", [](const Case&) { return true; }};
 inline constexpr Scope with_bpm{"on bpm", is_bpm};
 inline constexpr Scope with_mpm{"on mpm", is_mpm};
 inline constexpr Scope with_outlines{"on mpm and rigid", is_outlined};
-inline constexpr Scope with_rigid{"on rigid", is_rigid};
-inline constexpr Scope ellipses{
-    "on rigid ellipses", [](const Case& c) { return is_rigid(c) && c.grain.shape == RigidShape::ellipse; }};
-inline constexpr Scope polygons{
-    "on rigid polygons", [](const Case& c) { return is_rigid(c) && c.grain.shape == RigidShape::polygon; }};
+inline bool has_shape(const Case& c, ShapeOfGrain shape) { return is_outlined(c) && c.grain.shape == shape; }
+inline constexpr Scope ellipses{"on ellipses",
+                                [](const Case& c) { return has_shape(c, ShapeOfGrain::ellipse); }};
+inline constexpr Scope polygons{"on polygons",
+                                [](const Case& c) { return has_shape(c, ShapeOfGrain::polygon); }};
+inline constexpr Scope outlines{"on grains of shape \"outline\"",
+                                [](const Case& c) { return has_shape(c, ShapeOfGrain::outline); }};
+inline constexpr Scope turned{"on a grain between walls that is no disk", [](const Case& c) {
+                                return is_outlined(c) && !is_in_a_box(c) && c.grain.shape != ShapeOfGrain::disk;
+                              }};
 inline constexpr Scope in_a_box{"in a box", is_in_a_box};
 inline constexpr Scope between_walls{"between walls", [](const Case& c) { return !is_in_a_box(c); }};
 inline constexpr Scope bpm_in_a_box{"on bpm in a box",

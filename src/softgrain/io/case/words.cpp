@@ -29,9 +29,10 @@ std::span<const Word<GrainModel>> words_of() {
 }
 
 template <>
-std::span<const Word<RigidShape>> words_of() {
-  static constexpr std::array words{Word{RigidShape::disk, "disk"}, Word{RigidShape::ellipse, "ellipse"},
-                                    Word{RigidShape::polygon, "polygon"}};
+std::span<const Word<ShapeOfGrain>> words_of() {
+  static constexpr std::array words{Word{ShapeOfGrain::disk, "disk"}, Word{ShapeOfGrain::ellipse, "ellipse"},
+                                    Word{ShapeOfGrain::polygon, "polygon"},
+                                    Word{ShapeOfGrain::outline, "outline"}};
   return words;
 }
 

@@ -205,7 +205,7 @@ TEST_CASE("rigid kinds mix with elastic ones, and a resolved case says so") {
   CHECK(c.experiment.model == GrainModel::mpm);
   const Case glass = case_of_kind(c, 0), lead = case_of_kind(c, 1);
   CHECK(is_rigid(glass));
-  CHECK(glass.grain.shape == RigidShape::polygon);
+  CHECK(glass.grain.shape == ShapeOfGrain::polygon);
   CHECK(glass.grain.sides == 4);
   CHECK(is_elastic(lead));
   CHECK(lead.mpm.law == MaterialLaw::von_mises);
