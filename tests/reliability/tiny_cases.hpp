@@ -38,6 +38,9 @@ inline Words tiny_path(const std::string& name) {
     add({"loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.17", "loading.unload_at=[0.15]",
          "loading.unload_by=0.04", "loading.max_stress=0", "loading.max_packing_fraction=0",
          "sample.packing_fraction=0.62", "kind.rigid.share=0.5"});
+  if (name == "shapes")
+    add({"kind.ellipse.number=2", "kind.square.number=2", "kind.drop.number=2",
+         "loading.wall_velocity=\"4 m/s\"", "loading.max_strain=0.38"});
   if (name == "sticky_grains") add({"sample.grains=12", "loading.max_strain=0.35"});
   if (name == "poured") add({"time.step=\"1 ms\"", "loading.max_strain=0.35"});
   if (name == "jamming")
@@ -99,6 +102,8 @@ inline std::vector<TinyCase> tiny_cases() {
     else if (name == "rubber_sand" || name == "soft_rigid" || name == "compaction_3d" ||
              name == "sphere_walls")
       cases.push_back({name, source, tiny_path(name)});
+    else if (name == "shapes")
+      cases.push_back({name, source, tiny_path(name), 0});
     else if (name == "sticky_grains")
       cases.push_back({name, source, tiny_path(name), 1});
     else if (name == "biaxial" || name == "relaxation" || name == "shear" || name == "poured")
@@ -109,6 +114,11 @@ inline std::vector<TinyCase> tiny_cases() {
       Words more = tiny_path(name);
       more.insert(more.end(), {"mpm.law=\"von_mises\"", "mpm.yield_stress=\"0.3 MPa\""});
       cases.push_back({"plastic-sphere_walls", source, more});
+    }
+    if (name == "shapes") {
+      Words more = tiny_path(name);
+      more.insert(more.end(), {"mpm.integrator=explicit", "kind.drop.model=rigid"});
+      cases.push_back({"explicit-shapes", source, more, 0});
     }
     if (name == "soft_rigid") {
       Words more = tiny_path(name);

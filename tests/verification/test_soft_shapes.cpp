@@ -150,7 +150,7 @@ TEST_CASE("a soft ellipse is as far from walls as its support function says, how
         worst = std::max(worst, std::abs(reach_of(shape, {std::cos(angle), std::sin(angle)}) - exact));
       }
       MESSAGE("support of an ellipse: aspect ", aspect, " cells ", cells, " error/R ", worst);
-      CHECK(worst < 0.2 / (cells * cells * cells));
+      CHECK(worst < 0.045 * aspect * aspect / (cells * cells * cells));
     }
 }
 
@@ -159,12 +159,12 @@ TEST_CASE_TEMPLATE("an elastic square between walls without friction is a block:
   constexpr bool implicit = std::is_same_v<Dynamics, ImplicitDynamics>;
   constexpr double nu = 0.3, strain = 1e-3;
   // wall speeds so small that inertia is nothing
-  const double speed = implicit ? 1e-3 : 0.02;
+  const double speed = 2e-3;
   std::conditional_t<implicit, ImplicitOptions, ExplicitOptions> options;
   if constexpr (implicit)
     options.tolerance = 1e-8;
   else
-    options.damping = 2e4;
+    options.damping = 5e4;
   Dynamics dynamics(made_of({square_at(shape_of(soft_polygon(4, 6)), {0, 0})}, MaterialLaw::small_strain_hooke, nu),
                     std::vector<Wall<2>>{test::floor_at(-half_side),
                                          {.point = {0, half_side}, .normal = {0, -1}, .velocity = {0, -speed}}},
@@ -177,13 +177,13 @@ TEST_CASE_TEMPLATE("an elastic square between walls without friction is a block:
   for (int k = 0; k < steps; ++k) {
     dynamics.step(step);
     if (k < steps - steps / 10 - 1) continue;
-    const double now = (k + 0.5) * step * speed / (2 * half_side);
+    const double now = (k + 1) * step * speed / (2 * half_side);
     force += (dynamics.wall_impulse(1)[1] - dynamics.wall_impulse(0)[1]) / 2 / step / now * strain;
     ++rows;
   }
   const double exact = E / (1 - nu * nu) * strain * 2 * half_side;
   MESSAGE("square between walls: F/F_exact - 1 = ", force / rows / exact - 1);
-  CHECK(std::abs(force / rows / exact - 1) < 0.01);
+  CHECK(std::abs(force / rows / exact - 1) < (implicit ? 1e-5 : 2e-3));
 }
 
 TEST_CASE_TEMPLATE("a soft ellipse that spins freely keeps its angular momentum", Dynamics, ImplicitDynamics,
@@ -247,6 +247,29 @@ TEST_CASE("rigid outlines weigh and turn as their bodies do, and a square made o
   }
   CHECK(std::abs(inertia / expected - 1) < 1e-12);
   CHECK(std::abs(inertia / (regular.area / 3) - 1) < 1e-12);  // side^4/6, side^2 = 2
+}
+
+TEST_CASE("the nodes of a rigid outline have the mass, the centre and the moment of the body, however uneven it is") {
+  std::vector<OutlinePoint> drop{{{std::numbers::sqrt2, 0}, true}};
+  for (int k = 0; k <= 24; ++k) {
+    const double angle = pi / 4 + 1.5 * pi * k / 24;
+    drop.push_back({{std::cos(angle), std::sin(angle)}, false});
+  }
+  const OutlineCurve curve(drop);
+  const Topology shape = rigid_outline(curve, 20);
+  const double unit = 1 / curve.reach();
+  Vec<2> first;
+  double area = 0, moment = 0;
+  for (int i = 0; i < shape.grid.nodes(); ++i) {
+    CHECK(shape.node_volume[i] > 0);
+    area += shape.node_volume[i];
+    first += shape.node_volume[i] * shape.grid.node[i];
+    moment += shape.node_volume[i] * dot(shape.grid.node[i], shape.grid.node[i]);
+  }
+  CHECK(std::abs(area / (curve.area() * unit * unit) - 1) < 1e-12);
+  CHECK(norm(first) < 1e-14);
+  CHECK(std::abs(moment / (curve.moment() * std::pow(unit, 4)) - 1) < 1e-12);
+  CHECK(std::abs(curve.area() / (0.75 * pi + 1) - 1) < 0.01);  // the drop's, of a straight side and three points
 }
 
 TEST_CASE("outlines that no grid fits are refused at the place where cells fold") {

@@ -154,13 +154,11 @@ ReferenceGrid outline_grid(std::span<const Vec<2>> outline, int n) {
 
 std::optional<Vec<2>> folded_cell(const ReferenceGrid& grid) {
   const std::vector<MaterialPoint> points = material_points(grid);
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    if (points[p].volume > 0) continue;
-    Vec<2> centre;
-    for (const int node : grid.cell[p / 4]) centre += 0.25 * grid.node[node];
-    return centre;
-  }
-  return std::nullopt;
+  const auto worst = std::min_element(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
+  if (worst->volume > 0) return std::nullopt;
+  Vec<2> centre;
+  for (const int node : grid.cell[static_cast<std::size_t>(worst - points.begin()) / 4]) centre += 0.25 * grid.node[node];
+  return centre;
 }
 
 ReferenceGrid polygon_grid(std::span<const Vec<2>> vertices, int n) {

@@ -38,7 +38,7 @@ ReferenceGrid polygon_grid(std::span<const Vec<2>> vertices, int n);
 /// The grid whose outline is these 4n points, counter-clockwise; interior nodes at the mean of their
 /// neighbours. No cell folds if the outline is convex. Raises UsageError for another number of points.
 ReferenceGrid outline_grid(std::span<const Vec<2>> outline, int n);
-/// The centre of a cell that folds, if one does.
+/// The centre of the cell that folds most, if one does.
 std::optional<Vec<2>> folded_cell(const ReferenceGrid& grid);
 
 /// The four material points of a cell: volume and gradients of the four shape functions.

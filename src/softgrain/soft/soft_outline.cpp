@@ -27,7 +27,7 @@ Topology soft_outline(const OutlineCurve& curve, int cells) {
           "the smooth curve through the points of the outline crosses itself; give more points, or corners");
   ReferenceGrid grid = outline_grid(outline, cells);
   if (const std::optional<Vec<2>> fold = folded_cell(grid))
-    throw OutlineFolds("the outline is so concave that a cell of its grid folds; make it rounder there, or give more cells",
+    throw OutlineFolds("the outline is so concave that a cell of its grid folds; make it rounder there",
                        curve.reach() * *fold + curve.centroid());
   grid.fullness = curve.area() / (curve.reach() * curve.reach()) / polygon_area(outline);
   return {std::move(grid), std::move(corners)};

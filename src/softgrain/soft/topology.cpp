@@ -4,7 +4,9 @@
 #include <cmath>
 #include <span>
 
+#include "softgrain/core/error.hpp"
 #include "softgrain/geometry/polygon.hpp"
+#include "softgrain/math/tensor.hpp"
 
 namespace softgrain {
 namespace {
@@ -138,6 +140,27 @@ double reach_of(const Topology& shape, const Vec<2>& direction) {
   return reach;
 }
 
+/// Of a rigid grain whose vertices do not lie evenly about its centre of mass: their shares are
+/// c (1 + b . X), so that sum m X = 0 and sum m |X|^2 = moment.
+void Topology::balance(double moment) {
+  Vec<2> first;
+  Mat<2> second;
+  for (const Vec<2>& X : grid.outline()) {
+    first += X;
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j) second(i, j) += X[i] * X[j];
+  }
+  const Vec<2> b = -(inverse(second) * first);
+  double squares = 0, sum = 0;
+  for (const Vec<2>& X : grid.outline()) squares += (1 + dot(b, X)) * dot(X, X);
+  for (int i = grid.outline_begin; i < grid.nodes(); ++i) {
+    const Vec<2>& X = grid.node[i];
+    require(1 + dot(b, X) > 0, "the outline of a rigid grain is too uneven: too many vertices on one side of its centre");
+    sum += node_volume[i] = moment / squares * (1 + dot(b, X));
+  }
+  node_volume[0] = area - sum;
+}
+
 Topology::Topology(ReferenceGrid outline, double moment, std::vector<char> corners)
     : Topology(std::move(outline)) {
   corner = std::move(corners);
@@ -147,6 +170,10 @@ Topology::Topology(ReferenceGrid outline, double moment, std::vector<char> corne
   for (const Vec<2>& X : grid.outline()) squares += dot(X, X);
   node_volume.assign(grid.nodes(), moment / squares);
   node_volume[0] = area - grid.outline_nodes() * (moment / squares);
+  Vec<2> first;
+  for (const Vec<2>& X : grid.outline()) first += X;
+  constexpr double nothing = 1e-9;
+  if (norm(first) > nothing * grid.outline_nodes()) balance(moment);
 }
 
 }  // namespace softgrain

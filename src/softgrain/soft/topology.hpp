@@ -45,7 +45,7 @@ struct Topology {
   Topology(ReferenceGrid reference_grid, std::vector<char> corners);
   /// Of a rigid grain: a grid without cells, whose node 0 is the centre of mass at the origin and whose other
   /// nodes are the outline. Its nodes carry the grain's mass and its moment of inertia, those of the outline
-  /// equal shares: moment is the integral of |X|^2 over the body [R^4].
+  /// equal shares where they lie evenly: moment is the integral of |X|^2 over the body [R^4].
   /// corner: of the outline's vertices those where it has none of its curve's smoothness; none: it is smooth.
   Topology(ReferenceGrid outline, double moment, std::vector<char> corner = {});
 
@@ -62,6 +62,9 @@ struct Topology {
   BlockPattern pattern;
   std::vector<CellBlock>
       cell_blocks;  ///< (10 cells): the pairs (a, b), b <= a, of the four nodes of each cell
+
+ private:
+  void balance(double moment);
 };
 
 /// How far the undeformed outline with its arcs reaches from the origin in a direction of length 1 [R]: its

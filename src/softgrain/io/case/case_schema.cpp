@@ -145,6 +145,19 @@ constexpr std::string_view sample_files =
     "it needs\n"
     "the file no more.\n";
 
+constexpr std::string_view outline_files =
+    "\n## The file of an outline\n\n"
+    "`grain.outline` and `kind.outline` name a table of points in their order along a closed outline, in any "
+    "unit:\n\n"
+    "```\nx, y, corner\n1.414, 0, 1\n0.707, 0.707, 0\n0.5, 0.866, 0\n```\n\n"
+    "`x` and `y` must be there. `corner` is 1 where the outline has a corner, and 0 where it is smooth; "
+    "without that\n"
+    "column a corner is where the polygon of the points turns by more than 30 degrees. The first point may "
+    "stand\n"
+    "again at the end. The grain's diameter is that of the circle about its centre of area that holds it. The "
+    "run\n"
+    "keeps the points in its `case.toml`.\n";
+
 constexpr std::string_view stages =
     "\nStages follow one another. Compression is positive, and strain counts from the start of the run. Of "
     "each\n"
@@ -206,7 +219,7 @@ std::string case_reference_page() {
                             written_value(Case{}, key), key.text);
       });
   add_forms_of(table_of_forms);
-  return text + std::string(sample_files) + reference_of_forms() + std::string(stages);
+  return text + std::string(sample_files) + std::string(outline_files) + reference_of_forms() + std::string(stages);
 }
 
 }  // namespace softgrain
