@@ -72,14 +72,16 @@ double angular_momentum(const SoftGrains& grains) {
 
 }  // namespace
 
-TEST_CASE("soft ellipses and polygons weigh what their bodies do; their lumped moments near those of the body") {
+TEST_CASE(
+    "soft ellipses and polygons weigh what their bodies do; their lumped moments near those of the body") {
   for (const double aspect : {1.5, 3.0, 6.0}) {
     double before = 0;
     for (const int cells : {8, 16}) {
       const Whole ellipse = whole(soft_ellipse(aspect, cells));
       const double b = 1 / aspect, area = pi * b;
       CHECK(std::abs(ellipse.area / area - 1) < 1e-12);
-      const double xx = ellipse.moment(0, 0) / (area / 4) - 1, yy = ellipse.moment(1, 1) / (area * b * b / 4) - 1;
+      const double xx = ellipse.moment(0, 0) / (area / 4) - 1,
+                   yy = ellipse.moment(1, 1) / (area * b * b / 4) - 1;
       CHECK(std::abs(xx - yy) < 1e-12);  // the disk's, made narrow
       CHECK(std::abs(xx) < 0.5 / (cells * cells));
       if (before > 0) CHECK(before / xx > 3.5);  // second order in the width of cells
@@ -98,7 +100,8 @@ TEST_CASE("soft ellipses and polygons weigh what their bodies do; their lumped m
     }
 }
 
-TEST_CASE("corners of soft grains are sharp and their sides straight; a curve round a corner bulges .074 cell") {
+TEST_CASE(
+    "corners of soft grains are sharp and their sides straight; a curve round a corner bulges .074 cell") {
   const auto shape = shape_of(soft_polygon(4, 8));
   for (const double beside : {0.0, 0.3, 0.8}) {  // side faces side, also shifted
     const SoftGrains pair =
@@ -106,12 +109,13 @@ TEST_CASE("corners of soft grains are sharp and their sides straight; a curve ro
     CHECK(std::abs(least_gap(pair) / (0.02 * R) - 1) < 1e-9);
   }
   // corner faces corner; a corner over the middle of a side
-  CHECK(std::abs(least_gap(made_of({square_at(shape, {0, 0}),
-                                    square_at(shape, {2 * half_side + 0.03 * R, 2 * half_side + 0.01 * R})})) /
-                     (std::hypot(0.03, 0.01) * R) -
-                 1) < 1e-9);
-  CHECK(std::abs(least_gap(made_of({square_at(shape, {0, 0}),
-                                    test::placed(shape, R, {0.1 * R, half_side + 1.01 * R})})) /
+  CHECK(
+      std::abs(least_gap(made_of({square_at(shape, {0, 0}),
+                                  square_at(shape, {2 * half_side + 0.03 * R, 2 * half_side + 0.01 * R})})) /
+                   (std::hypot(0.03, 0.01) * R) -
+               1) < 1e-9);
+  CHECK(std::abs(least_gap(made_of(
+                     {square_at(shape, {0, 0}), test::placed(shape, R, {0.1 * R, half_side + 1.01 * R})})) /
                      (0.01 * R) -
                  1) < 1e-9);
   // the furthest that the curve of each lies outside its square
@@ -154,8 +158,8 @@ TEST_CASE("a soft ellipse is as far from walls as its support function says, how
     }
 }
 
-TEST_CASE_TEMPLATE("an elastic square between walls without friction is a block: sigma = E/(1 - nu^2) eps", Dynamics,
-                   ImplicitDynamics, ExplicitDynamics) {
+TEST_CASE_TEMPLATE("an elastic square between walls without friction is a block: sigma = E/(1 - nu^2) eps",
+                   Dynamics, ImplicitDynamics, ExplicitDynamics) {
   constexpr bool implicit = std::is_same_v<Dynamics, ImplicitDynamics>;
   constexpr double nu = 0.3, strain = 1e-3;
   // wall speeds so small that inertia is nothing
@@ -165,10 +169,11 @@ TEST_CASE_TEMPLATE("an elastic square between walls without friction is a block:
     options.tolerance = 1e-8;
   else
     options.damping = 5e4;
-  Dynamics dynamics(made_of({square_at(shape_of(soft_polygon(4, 6)), {0, 0})}, MaterialLaw::small_strain_hooke, nu),
-                    std::vector<Wall<2>>{test::floor_at(-half_side),
-                                         {.point = {0, half_side}, .normal = {0, -1}, .velocity = {0, -speed}}},
-                    options);
+  Dynamics dynamics(
+      made_of({square_at(shape_of(soft_polygon(4, 6)), {0, 0})}, MaterialLaw::small_strain_hooke, nu),
+      std::vector<Wall<2>>{test::floor_at(-half_side),
+                           {.point = {0, half_side}, .normal = {0, -1}, .velocity = {0, -speed}}},
+      options);
   const double way = strain * 2 * half_side;
   const double step = implicit ? way / speed / 14 : stable_time_step(dynamics.grains);
   const int steps = static_cast<int>(std::lround(way / speed / step));
@@ -214,7 +219,8 @@ TEST_CASE("an ellipse pressed by walls has Hertz' contact with its radius of cur
     const double reach = R / aspect;
     ImplicitDynamics dynamics(
         made_of({test::placed(shape, R, {0, 0})}, MaterialLaw::small_strain_hooke, nu),
-        std::vector<Wall<2>>{test::floor_at(-reach), {.point = {0, reach}, .normal = {0, -1}, .velocity = {0, -speed}}},
+        std::vector<Wall<2>>{test::floor_at(-reach),
+                             {.point = {0, reach}, .normal = {0, -1}, .velocity = {0, -speed}}},
         {});
     const double dt = 2e-3 * R / speed, curvature = R * aspect;  // a^2/b
     for (int k = 0; k < 8; ++k) dynamics.step(dt);
@@ -249,7 +255,9 @@ TEST_CASE("rigid outlines weigh and turn as their bodies do, and a square made o
   CHECK(std::abs(inertia / (regular.area / 3) - 1) < 1e-12);  // side^4/6, side^2 = 2
 }
 
-TEST_CASE("the nodes of a rigid outline have the mass, the centre and the moment of the body, however uneven it is") {
+TEST_CASE(
+    "the nodes of a rigid outline have the mass, the centre and the moment of the body, however uneven it "
+    "is") {
   std::vector<OutlinePoint> drop{{{std::numbers::sqrt2, 0}, true}};
   for (int k = 0; k <= 24; ++k) {
     const double angle = pi / 4 + 1.5 * pi * k / 24;
@@ -269,7 +277,8 @@ TEST_CASE("the nodes of a rigid outline have the mass, the centre and the moment
   CHECK(std::abs(area / (curve.area() * unit * unit) - 1) < 1e-12);
   CHECK(norm(first) < 1e-14);
   CHECK(std::abs(moment / (curve.moment() * std::pow(unit, 4)) - 1) < 1e-12);
-  CHECK(std::abs(curve.area() / (0.75 * pi + 1) - 1) < 0.01);  // the drop's, of a straight side and three points
+  CHECK(std::abs(curve.area() / (0.75 * pi + 1) - 1) <
+        0.01);  // the drop's, of a straight side and three points
 }
 
 TEST_CASE("outlines that no grid fits are refused at the place where cells fold") {

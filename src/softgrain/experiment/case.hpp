@@ -30,14 +30,14 @@ enum class LoadingPath {
   relaxation,  ///< compaction, then rest
   stages,      ///< grains in a box, along stages of one's own
 };
-enum class GrainModel { bpm, mpm, rigid };         ///< bonded rigid primaries, an elastic body, a rigid one
+enum class GrainModel { bpm, mpm, rigid };  ///< bonded rigid primaries, an elastic body, a rigid one
 enum class ShapeOfGrain {
   disk,
   ellipse,
   polygon,
   outline,  ///< of the grain's own
 };
-enum class EqualPrimaries { count, size };         ///< what the grains of a packing share
+enum class EqualPrimaries { count, size };  ///< what the grains of a packing share
 enum class Integrator {
   backward_euler,    ///< implicit
   symplectic_euler,  ///< explicit
@@ -59,8 +59,8 @@ struct Case {
   } experiment;
 
   struct Grain {
-    double radius = 5e-3;                 ///< R [m]
-    double density = 990;                 ///< rho [kg/m^3]: the grain weighs rho pi R^2
+    double radius = 5e-3;                     ///< R [m]
+    double density = 990;                     ///< rho [kg/m^3]: the grain weighs rho pi R^2
     ShapeOfGrain shape = ShapeOfGrain::disk;  ///< others than disks lie in the circle of the diameter
     double aspect = 2;                        ///< of an ellipse, long over short axis
     int sides = 5;                            ///< of a regular polygon

@@ -163,9 +163,9 @@ double longest_time_step(const Case& c) {
     const double radius = !is_in_a_box(of_kind)           ? of_kind.grain.radius
                           : of_kind.sample.placed.empty() ? diameter_law(of_kind.sample).least() / 2
                                                           : of_kind.sample.smallest_diameter / 2;
-    return longest_stable_step(
-        grains_of(of_kind, {placement(grain_shape_of(of_kind), {.centre = {}, .radius = radius, .angle = 0})}),
-        damping_share);
+    return longest_stable_step(grains_of(of_kind, {placement(grain_shape_of(of_kind),
+                                                             {.centre = {}, .radius = radius, .angle = 0})}),
+                               damping_share);
   };
   return least_of_kinds(c, longest);
 }
@@ -190,7 +190,8 @@ PlacedModel elastic_grains_of(const Case& c) {
     for (const PlacedGrain& grain : sample.grains) placed.push_back(placement(shapes[grain.kind], grain));
     box = box_of(sample);
   } else {
-    placed.push_back(placement(shapes[0], {.centre = {}, .radius = c.grain.radius, .angle = angle_between_walls(c)}));
+    placed.push_back(
+        placement(shapes[0], {.centre = {}, .radius = c.grain.radius, .angle = angle_between_walls(c)}));
     const auto [low, high] = between_walls(c);
     box = walls_at(low, high);
   }

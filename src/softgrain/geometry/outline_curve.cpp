@@ -53,8 +53,7 @@ OutlineCurve::OutlineCurve(std::vector<OutlinePoint> points) : points_(std::move
     if (!at(k + 1).corner) end = l * slope_at(k + 1);
     if (at(k).corner && !at(k + 1).corner) begin = 2.0 * chord - end;
     if (at(k + 1).corner && !at(k).corner) end = 2.0 * chord - begin;
-    spans_.push_back(
-        {at(k).x, begin, 3.0 * chord - 2.0 * begin - end, -2.0 * chord + begin + end});
+    spans_.push_back({at(k).x, begin, 3.0 * chord - 2.0 * begin - end, -2.0 * chord + begin + end});
   }
   // of f homogeneous of degree k: integral f dA = 1/(k + 2) closed integral f x x dx
   Vec<2> first;
@@ -77,7 +76,8 @@ OutlineCurve::OutlineCurve(std::vector<OutlinePoint> points) : points_(std::move
 }
 
 int OutlineCurve::corners() const {
-  return static_cast<int>(std::count_if(points_.begin(), points_.end(), [](const OutlinePoint& p) { return p.corner; }));
+  return static_cast<int>(
+      std::count_if(points_.begin(), points_.end(), [](const OutlinePoint& p) { return p.corner; }));
 }
 
 std::vector<OutlinePoint> OutlineCurve::sample(int count) const {
@@ -135,7 +135,8 @@ std::array<int, 2> crossing_edges(std::span<const OutlinePoint> points) {
 void find_corners(std::vector<OutlinePoint>& points) {
   const std::size_t n = points.size();
   for (std::size_t k = 0; k < n; ++k) {
-    const Vec<2> before = points[k].x - points[(k + n - 1) % n].x, after = points[(k + 1) % n].x - points[k].x;
+    const Vec<2> before = points[k].x - points[(k + n - 1) % n].x,
+                 after = points[(k + 1) % n].x - points[k].x;
     points[k].corner = std::abs(std::atan2(cross_z(before, after), dot(before, after))) > least_corner;
   }
 }

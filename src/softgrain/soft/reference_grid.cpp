@@ -146,7 +146,8 @@ ReferenceGrid disk_grid(int n) {
 ReferenceGrid outline_grid(std::span<const Vec<2>> outline, int n) {
   ReferenceGrid grid = disk_grid(n);
   require(static_cast<int>(outline.size()) == grid.outline_nodes(),
-          "the outline of a grid of {} cells has {} vertices, not {}", n, grid.outline_nodes(), outline.size());
+          "the outline of a grid of {} cells has {} vertices, not {}", n, grid.outline_nodes(),
+          outline.size());
   map_to_outline(grid, outline);
   grid.fullness = 1;
   return grid;
@@ -154,10 +155,12 @@ ReferenceGrid outline_grid(std::span<const Vec<2>> outline, int n) {
 
 std::optional<Vec<2>> folded_cell(const ReferenceGrid& grid) {
   const std::vector<MaterialPoint> points = material_points(grid);
-  const auto worst = std::min_element(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
+  const auto worst = std::min_element(points.begin(), points.end(),
+                                      [](const auto& a, const auto& b) { return a.volume < b.volume; });
   if (worst->volume > 0) return std::nullopt;
   Vec<2> centre;
-  for (const int node : grid.cell[static_cast<std::size_t>(worst - points.begin()) / 4]) centre += 0.25 * grid.node[node];
+  for (const int node : grid.cell[static_cast<std::size_t>(worst - points.begin()) / 4])
+    centre += 0.25 * grid.node[node];
   return centre;
 }
 

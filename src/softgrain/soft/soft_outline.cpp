@@ -33,6 +33,8 @@ Topology soft_outline(const OutlineCurve& curve, int cells) {
   return {std::move(grid), std::move(corners)};
 }
 
-Topology soft_polygon(int sides, int cells) { return soft_outline(OutlineCurve(regular_polygon(sides)), cells); }
+Topology soft_polygon(int sides, int cells) {
+  return soft_outline(OutlineCurve(regular_polygon(sides)), cells);
+}
 
 }  // namespace softgrain

@@ -155,7 +155,8 @@ void Topology::balance(double moment) {
   for (const Vec<2>& X : grid.outline()) squares += (1 + dot(b, X)) * dot(X, X);
   for (int i = grid.outline_begin; i < grid.nodes(); ++i) {
     const Vec<2>& X = grid.node[i];
-    require(1 + dot(b, X) > 0, "the outline of a rigid grain is too uneven: too many vertices on one side of its centre");
+    require(1 + dot(b, X) > 0,
+            "the outline of a rigid grain is too uneven: too many vertices on one side of its centre");
     sum += node_volume[i] = moment / squares * (1 + dot(b, X));
   }
   node_volume[0] = area - sum;

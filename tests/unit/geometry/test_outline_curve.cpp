@@ -62,12 +62,13 @@ TEST_CASE("a polygon is straight between its corners, which all are vertices, to
     const auto points = curve.sample(30);
     CHECK(points.size() == 30);
     CHECK(std::ranges::count_if(points, &OutlinePoint::corner) == sides);
-    for (const OutlinePoint& point : points) {  // at the distance of a side from the centre, seen along its normal
+    for (const OutlinePoint& point :
+         points) {  // at the distance of a side from the centre, seen along its normal
       double nearest = 2;
       for (int k = 0; k < sides; ++k) {
         const double angle = (k + 0.5) * turn;
-        nearest = std::min(nearest, std::abs(dot(point.x, Vec<2>{std::cos(angle), std::sin(angle)}) -
-                                             std::cos(turn / 2)));
+        nearest = std::min(
+            nearest, std::abs(dot(point.x, Vec<2>{std::cos(angle), std::sin(angle)}) - std::cos(turn / 2)));
       }
       CHECK(nearest < 1e-14);
     }
@@ -88,7 +89,8 @@ TEST_CASE("a half disk has two sharp corners, a straight side and a round one") 
   }
 }
 
-TEST_CASE("points are taken in either sense, and corners found where the polygon turns by more than 30 degrees") {
+TEST_CASE(
+    "points are taken in either sense, and corners found where the polygon turns by more than 30 degrees") {
   auto points = half_disk(24);
   for (OutlinePoint& point : points) point.corner = false;
   find_corners(points);

@@ -16,9 +16,9 @@
 #include "softgrain/io/case/case_relations.hpp"
 #include "softgrain/io/case/case_value.hpp"
 #include "softgrain/io/case/form_reader.hpp"
-#include "softgrain/io/case/outline_file.hpp"
 #include "softgrain/io/case/placement.hpp"
 #include "softgrain/io/case/schema.hpp"
+#include "softgrain/io/case/shape_check.hpp"
 #include "softgrain/io/case/suggest.hpp"
 #include "softgrain/io/case/toml_document.hpp"
 #include "softgrain/io/case/words.hpp"
@@ -39,7 +39,6 @@ class CaseReader {
       read_file_text();
       forms_.finish_file();
       for (std::size_t i = 0; i < sets_.size(); ++i) read_set(static_cast<int>(i));
-      forms_.imply_shape();
       settle_time_step();
       set_defaults_of_space(draft_.the_case, [&](const char* key) { return draft_.origins.contains(key); });
       forms_.finish_stages();
@@ -47,7 +46,7 @@ class CaseReader {
       const PlacedLines lines = place_grains(forms_, draft_, sources_);
       check_heights(draft_);
       forms_.finish_kinds();
-      if (draft_.the_case.kinds.empty()) check_outline(draft_);
+      if (draft_.the_case.kinds.empty()) check_shape(draft_);
       if (!draft_.is_valid("grain.outline")) throw CaseFileError(report(draft_.issues, sources_, sets_));
       draft_.the_case = complete_sample(draft_.the_case);
       pour_grains();

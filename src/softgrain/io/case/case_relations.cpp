@@ -10,9 +10,9 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/estimate.hpp"
-#include "softgrain/experiment/shape_of_case.hpp"
 #include "softgrain/experiment/solid_case.hpp"
 #include "softgrain/io/case/scope.hpp"
+#include "softgrain/io/case/shape_check.hpp"
 #include "softgrain/io/case/words.hpp"
 #include "softgrain/material/any_law.hpp"
 
@@ -249,27 +249,6 @@ std::vector<std::string> keys_of_laws() {
 }
 
 }  // namespace
-
-std::string shape_cannot(const Case& c) {
-  constexpr double longest_soft = 10;
-  if (c.grain.shape == ShapeOfGrain::disk) return "";
-  const std::string_view shape = word_of(c.grain.shape);
-  if (is_bonded(c))
-    return fmt::format("not yet: bonded grains of shape \"{}\" come with a later version; today these are disks",
-                       shape);
-  if (is_elastic(c) && c.mpm.formulation == Formulation::updated_lagrangian)
-    return fmt::format("mpm.formulation \"updated_lagrangian\" takes disks, not grain.shape \"{}\"", shape);
-  if (c.grain.shape == ShapeOfGrain::outline && c.grain.outline.empty())
-    return "grain.shape \"outline\" needs grain.outline: a CSV file with the columns x, y";
-  if (is_elastic(c) && c.grain.shape == ShapeOfGrain::ellipse && c.grain.aspect > longest_soft)
-    return fmt::format("grain.aspect of elastic ellipses must be at most {}, got {}: cells would be too flat",
-                       longest_soft, c.grain.aspect);
-  if (c.mpm.cells < least_cells(c.grain))
-    return fmt::format("a grain of {} corners needs mpm.cells >= {}, got {}: each corner is a vertex",
-                       c.grain.shape == ShapeOfGrain::polygon ? c.grain.sides : 4 * least_cells(c.grain), least_cells(c.grain),
-                       c.mpm.cells);
-  return "";
-}
 
 const std::vector<Relation>& case_relations() {
   static const std::vector<Relation> relations{

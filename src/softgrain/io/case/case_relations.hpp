@@ -14,7 +14,4 @@ struct Relation {
 
 const std::vector<Relation>& case_relations();
 
-/// What is wrong with the shape of the grains of a kind, and a remedy; "" where nothing is.
-std::string shape_cannot(const Case& kind);
-
 }  // namespace softgrain

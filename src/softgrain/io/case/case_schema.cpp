@@ -42,7 +42,8 @@ Json value_schema(const Key& key) {
     return {{"type", "array"}, {"items", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
   if (std::holds_alternative<MemberOf<std::vector<OutlinePoint>>>(key.member))
     return {{"anyOf", Json::array({{{"type", "string"}},
-                                   {{"type", "array"}, {"items", {{"type", "array"}, {"items", {{"type", "number"}}}}}}})}};
+                                   {{"type", "array"},
+                                    {"items", {{"type", "array"}, {"items", {{"type", "number"}}}}}}})}};
   Json whole{{"type", "integer"}};
   add_bounds(whole, key.range);
   return whole;
@@ -154,7 +155,8 @@ constexpr std::string_view outline_files =
     "without that\n"
     "column a corner is where the polygon of the points turns by more than 30 degrees. The first point may "
     "stand\n"
-    "again at the end. The grain's diameter is that of the circle about its centre of area that holds it. The "
+    "again at the end. The grain's diameter is that of the circle about its centre of area that holds it. "
+    "The "
     "run\n"
     "keeps the points in its `case.toml`.\n";
 
@@ -219,7 +221,8 @@ std::string case_reference_page() {
                             written_value(Case{}, key), key.text);
       });
   add_forms_of(table_of_forms);
-  return text + std::string(sample_files) + std::string(outline_files) + reference_of_forms() + std::string(stages);
+  return text + std::string(sample_files) + std::string(outline_files) + reference_of_forms() +
+         std::string(stages);
 }
 
 }  // namespace softgrain

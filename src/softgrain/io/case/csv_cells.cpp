@@ -30,17 +30,19 @@ std::vector<CsvCell> csv_cells(std::string_view line) {
   return cells;
 }
 
-void for_each_csv_line(std::string_view text, const std::function<bool(int, std::string_view)>& visit) {
+int for_each_csv_line(std::string_view text, const std::function<bool(int, std::string_view)>& visit) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
-  for (int number = 1; !text.empty(); ++number) {
+  int number = 1;
+  for (; !text.empty(); ++number) {
     std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(text.size(), line.size() + 1));
     if (line.ends_with('\r')) line.remove_suffix(1);
     const std::string_view content = without_blanks(line);
     if (content.empty() || content.front() == '#') continue;
-    if (!visit(number, line)) return;
+    if (!visit(number, line)) return number + 1;
   }
+  return number;
 }
 
 }  // namespace softgrain

@@ -16,7 +16,8 @@ std::string_view without_blanks(std::string_view text);
 std::vector<CsvCell> csv_cells(std::string_view line);
 
 /// visit(number from 1, line) of all lines that are not blank and do not begin with #, until it says false. A
-/// byte order mark, with which spreadsheets begin, and line ends of any kind are left out.
-void for_each_csv_line(std::string_view text, const std::function<bool(int, std::string_view)>& visit);
+/// byte order mark, with which spreadsheets begin, and line ends of any kind are left out. Returns the number
+/// of the line behind the last.
+int for_each_csv_line(std::string_view text, const std::function<bool(int, std::string_view)>& visit);
 
 }  // namespace softgrain

@@ -267,6 +267,7 @@ void FormReader::imply_law_of_sizes() {
     draft_.the_case.sample.sizes = SizeLaw::lognormal;
 }
 
+/// A shape of one's own where an outline is given, and no word of it is said.
 void FormReader::imply_shape() {
   Case::Grain& grain = draft_.the_case.grain;
   if (!draft_.origins.contains("grain.shape") && !grain.outline.empty()) grain.shape = ShapeOfGrain::outline;

@@ -23,8 +23,6 @@ class FormReader {
   /// A key of a form in an ordinary table or a --set; false if there is none of this name.
   bool read_key(const std::string& name, const TomlValue& value, Origin origin);
 
-  /// A shape of one's own where an outline is given, and no word of it is said.
-  void imply_shape();
   /// What needs the whole file: pairs.
   void finish_file();
   /// What the tables [[stage]] say, when all else of the case is known.
@@ -75,6 +73,7 @@ class FormReader {
   StageText read_stage(const TomlValue::Table& table, Origin at);
   void give(const FormKey& form, const TomlValue& value, Origin origin);
   void imply_law_of_sizes();
+  void imply_shape();
   bool check_word(const FormKey& form, const TomlValue& value, Origin origin);
   std::optional<double> number(const FormKey& form, const TomlValue& value, Origin origin);
 

@@ -10,7 +10,7 @@
 #include "softgrain/io/case/case_relations.hpp"
 #include "softgrain/io/case/case_value.hpp"
 #include "softgrain/io/case/form_reader.hpp"
-#include "softgrain/io/case/outline_file.hpp"
+#include "softgrain/io/case/shape_check.hpp"
 #include "softgrain/io/case/suggest.hpp"
 #include "softgrain/io/case/words.hpp"
 
@@ -127,7 +127,7 @@ void FormReader::finish_kind(KindText& text) {
       if (draft.origins.contains(key)) at = std::max(at, draft.origins[key]);
     if (!message.empty()) draft.add(at, fmt::format("kind '{}': {}", text.name, message));
   }
-  if (draft.issues.empty()) check_outline(draft);
+  if (draft.issues.empty()) check_shape(draft);
   if (!draft.is_valid("grain.outline")) draft_.invalid.insert("grain.outline");
   std::vector<std::string> in_vain;
   for (const auto& [name, origin] : draft.origins) {
@@ -241,6 +241,7 @@ void FormReader::count_placed() {
 }
 
 void FormReader::finish_kinds() {
+  imply_shape();
   if (kinds_.empty()) {
     for (const PlacedGrain& grain : draft_.the_case.sample.placed)
       if (grain.kind != 0)

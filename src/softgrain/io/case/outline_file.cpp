@@ -5,16 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <limits>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/experiment/shape_of_case.hpp"
-#include "softgrain/io/case/case_relations.hpp"
 #include "softgrain/io/case/csv_cells.hpp"
 #include "softgrain/io/case/placement.hpp"
 #include "softgrain/io/case/suggest.hpp"
 #include "softgrain/io/case/units.hpp"
-#include "softgrain/soft/soft_outline.hpp"
 
 namespace softgrain {
 namespace {
@@ -62,8 +58,10 @@ class Reader {
     }
     for (const Column needed : {x, y})
       if (!has(columns, needed))
-        return add(1, fmt::format("no column '{}': the first line names the columns, as in 'x [mm], y [mm]' or "
-                                  "'x, y, corner'", column_names[needed]));
+        return add(1,
+                   fmt::format("no column '{}': the first line names the columns, as in 'x [mm], y [mm]' or "
+                               "'x, y, corner'",
+                               column_names[needed]));
     columns_ = columns;
   }
 
@@ -83,10 +81,12 @@ class Reader {
       try {
         number[column] = parse_quantity(std::string(cells[k].text), {});
       } catch (const UsageError&) {
-        return add(cells[k].column, fmt::format("{} = '{}' is not a number", column_names[column], cells[k].text));
+        return add(cells[k].column,
+                   fmt::format("{} = '{}' is not a number", column_names[column], cells[k].text));
       }
       if (column == corner && number[corner] != 0 && number[corner] != 1)
-        return add(cells[k].column, fmt::format("corner = {} must be 1, or 0 where the outline is smooth", cells[k].text));
+        return add(cells[k].column,
+                   fmt::format("corner = {} must be 1, or 0 where the outline is smooth", cells[k].text));
     }
     if (result_.points.size() == most_outline_points)
       return add(1, fmt::format("not yet: more than {} points in an outline", most_outline_points));
@@ -98,13 +98,16 @@ class Reader {
     std::vector<OutlinePoint>& points = result_.points;
     if (points.size() > 1 && points.front().x == points.back().x) points.pop_back(), result_.lines.pop_back();
     if (points.size() < 3)
-      return add(1, fmt::format("an outline needs at least 3 points, got {}: a line for each, under the line of "
-                                "columns 'x, y'", points.size()));
+      return add(1,
+                 fmt::format("an outline needs at least 3 points, got {}: a line for each, under the line of "
+                             "columns 'x, y'",
+                             points.size()));
     if (const auto [first, second] = crossing_edges(points); first >= 0) {
       line_ = result_.lines[static_cast<std::size_t>(second)];
-      return add(1, fmt::format("the edge from here to the next point crosses or touches that from line {}: the "
-                                "points stand in their order along an outline that does not cross itself",
-                                result_.lines[static_cast<std::size_t>(first)]));
+      return add(1,
+                 fmt::format("the edge from here to the next point crosses or touches that from line {}: the "
+                             "points stand in their order along an outline that does not cross itself",
+                             result_.lines[static_cast<std::size_t>(first)]));
     }
     if (!has(columns_, corner)) find_corners(points);
   }
@@ -125,8 +128,8 @@ TomlValue outline_of_file(const std::string& name, Origin origin, CaseDraft& dra
   if (origin.set < 0) path = fs::path(draft.sources->front().name).parent_path() / path;
   try {
     std::error_code unknown;
-    require(!name.empty() && (!fs::exists(path, unknown) || fs::is_regular_file(path, unknown)), "{} is not a file",
-            path.string());
+    require(!name.empty() && (!fs::exists(path, unknown) || fs::is_regular_file(path, unknown)),
+            "{} is not a file", path.string());
     draft.sources->push_back({path.string(), read_limited(path.string(), "the file of an outline")});
     text = read_outline_text(draft.sources->back().text);
   } catch (const UsageError& error) {
@@ -143,36 +146,6 @@ TomlValue outline_of_file(const std::string& name, Origin origin, CaseDraft& dra
     std::get<TomlValue::Array>(list.content).push_back({row, {}});
   }
   return list;
-}
-
-void check_outline(CaseDraft& draft) {
-  const Case& c = draft.the_case;
-  if (c.grain.shape == ShapeOfGrain::disk || !draft.is_valid("grain.outline")) return;
-  Origin origin;
-  for (const char* key : {"grain.shape", "grain.outline", "grain.aspect", "grain.sides", "mpm.cells"})
-    if (const auto given = draft.origins.find(key); given != draft.origins.end())
-      origin = std::max(origin, given->second);
-  const auto refuse = [&](const std::string& message) {
-    draft.add(origin, message);
-    draft.invalid.insert("grain.outline");
-  };
-  if (const std::string message = shape_cannot(c); !message.empty()) return refuse(message);
-  if (c.grain.shape != ShapeOfGrain::outline || is_in_space(c)) return;
-  origin = draft.origins["grain.outline"];
-  try {
-    grain_shape_of(c);
-  } catch (const OutlineFolds& fold) {
-    const auto& lines = draft.outline.lines;
-    std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < c.grain.outline.size(); ++k)
-      if (const double d = norm(c.grain.outline[k].x - fold.place); d < least) least = d, nearest = k;
-    if (nearest < lines.size()) origin = {.at = {lines[nearest], 1}, .source = draft.outline.source};
-    const Vec<2>& x = c.grain.outline[nearest].x;
-    refuse(fmt::format("at the point ({:.6g}, {:.6g}) {}; or write model = \"rigid\"", x[0], x[1], fold.what()));
-  } catch (const UsageError& error) {
-    refuse(fmt::format("grain.outline: {}", error.what()));
-  }
 }
 
 }  // namespace softgrain

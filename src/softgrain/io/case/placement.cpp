@@ -100,9 +100,9 @@ void check_placement(CaseDraft& draft, const PlacedLines& lines) {
                 fmt::format("grain {}: {}", fault.grain + 1,
                             fault_in_words(c, fault, fmt::format("number {}", fault.other + 1))));
     else
-      draft.add({.at = {lines.line[fault.grain], 1}, .source = lines.source},
-                fault_in_words(c, fault,
-                               fault.other < 0 ? "" : fmt::format("line {}", lines.line[fault.other])));
+      draft.add(
+          {.at = {lines.line[fault.grain], 1}, .source = lines.source},
+          fault_in_words(c, fault, fault.other < 0 ? "" : fmt::format("line {}", lines.line[fault.other])));
   }
 }
 

@@ -29,7 +29,7 @@ class Reader {
   Reader(const std::vector<std::string>& kinds, int dimension) : kinds_(kinds), is_solid_(dimension == 3) {}
 
   SampleText read(std::string_view text) {
-    for_each_csv_line(text, [&](int number, std::string_view line) {
+    const int behind = for_each_csv_line(text, [&](int number, std::string_view line) {
       line_ = number;
       if (!is_printable(line))
         add(1, "not text: a sample's file is UTF-8 without control characters");
@@ -39,6 +39,7 @@ class Reader {
         read_grain(line);
       return result_.issues.size() < most_issues;
     });
+    line_ = behind;
     if (result_.grains.empty() && result_.issues.empty())
       add(1, fmt::format("no grains: a line for each, under the line of columns {}", example()));
     return std::move(result_);

@@ -34,9 +34,9 @@ inline constexpr Scope polygons{"on polygons",
                                 [](const Case& c) { return has_shape(c, ShapeOfGrain::polygon); }};
 inline constexpr Scope outlines{"on grains of shape \"outline\"",
                                 [](const Case& c) { return has_shape(c, ShapeOfGrain::outline); }};
-inline constexpr Scope turned{"on a grain between walls that is no disk", [](const Case& c) {
-                                return is_outlined(c) && !is_in_a_box(c) && c.grain.shape != ShapeOfGrain::disk;
-                              }};
+inline constexpr Scope turned{
+    "on a grain between walls that is no disk",
+    [](const Case& c) { return is_outlined(c) && !is_in_a_box(c) && c.grain.shape != ShapeOfGrain::disk; }};
 inline constexpr Scope in_a_box{"in a box", is_in_a_box};
 inline constexpr Scope between_walls{"between walls", [](const Case& c) { return !is_in_a_box(c); }};
 inline constexpr Scope bpm_in_a_box{"on bpm in a box",

@@ -233,7 +233,8 @@ TEST_CASE("a square fills 2 over pi of its circle, and so do packing fractions o
 TEST_CASE("what rigid grains cannot do is told with a remedy") {
   CHECK(mentions(refusal("[experiment]\nmodel = 'rigid'\n"),
                  "case.toml:2:1: error: a rigid grain between two walls does not give way"));
-  CHECK(mentions(refusal(soft_and_rigid, {"kind.lead.shape=ellipse"}), "or of the model \"rigid\""));
+  CHECK(mentions(refusal(soft_and_rigid, {"kind.lead.shape=ellipse", "kind.lead.aspect=11"}),
+                 "kind 'lead': grain.aspect of elastic ellipses must be at most 10"));
   CHECK(mentions(refusal(soft_and_rigid, {"kind.glass.sides=2"}), "kind.sides = 2 is out of range"));
   CHECK(mentions(refusal(soft_and_rigid, {"kind.lead.model=bpm"}), "not yet: bonded grains among others"));
 }
