@@ -22,6 +22,8 @@ inline Words with_settings(Words words, const Words& settings) {
 
 /// Of the packings in experiments/ whose paths are more than a compaction.
 inline Words tiny_path(const std::string& name) {
+  if (name == "one_grain_box" || name == "diametral_plastic")
+    return {"output.samples=20", "output.snapshots=6", "output.report=false", "mpm.cells=4"};
   Words settings{"output.samples=20", "output.snapshots=6",   "output.report=false",   "sample.grains=6",
                  "mpm.cells=4",       "contact.friction=0.3", "loading.max_strain=0.3"};
   const auto add = [&](const Words& more) { settings.insert(settings.end(), more.begin(), more.end()); };
@@ -40,7 +42,7 @@ inline Words tiny_path(const std::string& name) {
          "sample.packing_fraction=0.62", "kind.rigid.share=0.5"});
   if (name == "shapes")
     add({"kind.ellipse.number=2", "kind.square.number=2", "kind.drop.number=2",
-         "loading.wall_velocity=\"4 m/s\"", "loading.max_strain=0.38"});
+         "loading.wall_velocity=\"4 m/s\"", "loading.max_strain=0.48", "sample.packing_fraction=0.58"});
   if (name == "sticky_grains") add({"sample.grains=12", "loading.max_strain=0.35"});
   if (name == "poured") add({"time.step=\"1 ms\"", "loading.max_strain=0.35"});
   if (name == "jamming")
@@ -102,6 +104,8 @@ inline std::vector<TinyCase> tiny_cases() {
     else if (name == "rubber_sand" || name == "soft_rigid" || name == "compaction_3d" ||
              name == "sphere_walls")
       cases.push_back({name, source, tiny_path(name)});
+    else if (name == "one_grain_box" || name == "diametral_plastic")
+      cases.push_back({name, source, tiny_path(name), 3});
     else if (name == "shapes")
       cases.push_back({name, source, tiny_path(name), 0});
     else if (name == "sticky_grains")

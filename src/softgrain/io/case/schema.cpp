@@ -70,7 +70,7 @@ std::vector<Key> all_keys() {
       KEY(grain.shape, "", its_words(), "of the undeformed grain; all but a disk lie in the circle of the grain's diameter, about their centre of area; left out: outline where one is given", with_outlines),
       KEY(grain.aspect, "", from_to(1, 20), "long over short axis of an ellipse; of an elastic one at most 10", ellipses),
       KEY(grain.sides, "", from_to(3, 100), "of a regular polygon, at most 4 mpm.cells", polygons),
-      KEY(grain.outline, "", anything(), "of the shape outline: a CSV file with the columns x, y and, where wanted, corner, from the folder of the case file; or its points [x, y] in their order, [x, y, 1] at a corner, which a run writes", outlines),
+      KEY(grain.outline, "", anything(), "of the shape outline: a CSV file with the columns x, y, corner (below), from the folder of the case file; or its points [x, y], at a corner [x, y, 1]", outlines),
       KEY(grain.angle, "deg", anything(), "by which one grain between two walls is turned, counter-clockwise; an ellipse lies along x, a polygon has a corner there", turned),
 
       KEY(bpm.primaries, "", from_to(fewest_primaries, 1e6),

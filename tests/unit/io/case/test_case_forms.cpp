@@ -104,8 +104,7 @@ TEST_CASE("what comes with later versions is refused by key and line, and says w
     CHECK(mentions(message, today));
     CHECK(mentions(message, "1 error; nothing was run"));
   };
-  check_not_yet("[[kind]]\nshape = 'ellipse'\n", "2:1", "today these are disks, or of the model \"rigid\"");
-  check_not_yet("[[kind]]\nshape = 'outline'\n", "2:9", "today it is one of \"disk\", \"ellipse\"");
+  check_not_yet("[[kind]]\nshape = 'ellipse'\n", "2:1", "today these are disks");  // bonded
   check_not_yet("[box]\ndie_friction = 0.2\n", "2:1", "[[pair]]");
   check_not_yet("[[kind]]\nname = 'a'\n[[pair]]\nbetween = ['a', 'bottom']\n", "4:1", "is all of them");
 }
@@ -125,9 +124,9 @@ TEST_CASE("mistakes in the long form are told with line, column and remedy") {
       refusal("[[kind]]\nlaw = { young_modulus = '5 mm' }\n"),
       "case.toml:2:25: error: kind.law.young_modulus: unit 'mm' has the wrong dimension for a stress"));
   CHECK(mentions(refusal("[[kind]]\nlaw = 'hencky'\n"), "'kind.law' is a table"));
-  CHECK(mentions(
-      refusal("[[kind]]\nshape = 'dsk'\n"),
-      "kind.shape takes one of \"disk\", \"ellipse\", \"polygon\", got 'dsk'; did you mean 'disk'?"));
+  CHECK(mentions(refusal("[[kind]]\nshape = 'dsk'\n"),
+                 "kind.shape takes one of \"disk\", \"ellipse\", \"polygon\", \"outline\", got 'dsk'; did "
+                 "you mean 'disk'?"));
   CHECK(mentions(refusal("[[kind]]\nname = 'wall'\n"), "\"wall\" is taken"));
   CHECK(mentions(refusal("[[kind]]\nshare = 0.7\n"),
                  "case.toml:2:1: error: kind.share = 0.7: there is only one"));
