@@ -8,6 +8,11 @@ def in_space(snapshot) -> bool:
     return snapshot.particles["position"].shape[1] == 3
 
 
+def of_grains(snapshot) -> bool:
+    """Whether a snapshot in space has one particle for each grain: elastic and rigid ones do, bonded ones have their primaries."""
+    return in_space(snapshot) and len(np.unique(snapshot.particles["grain"])) == len(snapshot.particles["position"])
+
+
 def triangles(snapshot):
     """(2 quads, 3, 3) [m]: each quad as two, seen counter-clockwise from outside; and the grain of each (2 quads,)."""
     quad = snapshot.surface["quad"].astype(int)

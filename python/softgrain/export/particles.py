@@ -11,7 +11,7 @@ AXES = {2: ("x", "y"), 3: ("x", "y", "z"), 4: ("xx", "xy", "yx", "yy")}
 def write_xyz(snapshots, file):
     """Extended XYZ: species X (ASE's name of what is no element), x y z [m], then radius, grain, pressure as far as they are recorded.
 
-    A grain in space is one particle: the ellipsoid that has its volume and its gyration tensor, as OVITO draws it:
+    An elastic or rigid grain in space is one particle: the ellipsoid that has its volume and its gyration tensor, as OVITO draws it:
     aspherical_shape (three semi-axes [m]), orientation (quaternion x y z w)."""
     for snapshot in snapshots:
         marks, solid = _marks(snapshot), _ellipsoids(snapshot)
@@ -92,14 +92,14 @@ def _place(snapshot):
 
 def _marks(snapshot):
     marks = {name: snapshot.particles[name] for name in ("radius", "grain", "kind", "pressure") if name in snapshot.particles}
-    if solids.in_space(snapshot) and "pressure" in snapshot.surface:
+    if solids.of_grains(snapshot) and "pressure" in snapshot.surface:
         marks["pressure"] = solids.pressures(snapshot)
     return marks
 
 
 def _ellipsoids(snapshot):
-    """Columns of the three semi-axes and of the quaternion; {} in the plane."""
-    if not solids.in_space(snapshot):
+    """Columns of the three semi-axes and of the quaternion; {} in the plane, and of primaries."""
+    if not solids.of_grains(snapshot):
         return {}
     axes, quaternion = solids.ellipsoids(snapshot)
     return {"aspherical_shape": axes.T, "orientation": quaternion.T}

@@ -11,25 +11,26 @@ namespace softgrain {
 
 /// The attraction between the primary particles of each grain, grain by grain on all threads, over a list in
 /// which each pair stands once.
-class AttractionForces {
+template <int Dim>
+class AttractionForcesOf {
  public:
   /// The same law in every grain.
-  explicit AttractionForces(const Attraction& law) : AttractionForces(std::vector{law}) {}
+  explicit AttractionForcesOf(const Attraction& law) : AttractionForcesOf(std::vector{law}) {}
 
   /// The law of each grain, by its number in RigidParticles::grain; a single one holds for all.
-  explicit AttractionForces(std::vector<Attraction> laws);
+  explicit AttractionForcesOf(std::vector<Attraction> laws);
 
   /// Makes the lists of grains again whose reference has moved on: all pairs closer than 2 a0 + skin there.
   /// Of all grains, or of those of this rank.
-  void update(const RigidParticles<2>& particles, const NeighbourReference<2>& reference,
+  void update(const RigidParticles<Dim>& particles, const NeighbourReference<Dim>& reference,
               const Shares& shares = {});
 
-  /// F_i += sum_j F(r_ij) (x_j - x_i)/r_ij  [N/m]; with shares each rank needs the lists of its own grains.
-  void add_forces(const RigidParticles<2>& particles, std::span<Vec<2>> force,
+  /// F_i += sum_j F(r_ij) (x_j - x_i)/r_ij  [N/m, N in space]; with shares each rank needs the lists of its own grains.
+  void add_forces(const RigidParticles<Dim>& particles, std::span<Vec<Dim>> force,
                   const Shares& shares = {}) const;
 
-  /// sum over pairs of U [J/m].
-  double energy(const RigidParticles<2>& particles) const;
+  /// sum over pairs of U [J/m, J in space].
+  double energy(const RigidParticles<Dim>& particles) const;
 
   /// Calls visit(i, j) once for each listed pair, i < j.
   template <class Visit>
@@ -52,12 +53,13 @@ class AttractionForces {
 
     int size() const { return static_cast<int>(begin.size()) - 1; }
   };
-  static Rows rows_of(const RigidParticles<2>& particles, const NeighbourReference<2>& reference,
+  static Rows rows_of(const RigidParticles<Dim>& particles, const NeighbourReference<Dim>& reference,
                       const GrainRange& grain);
-  void add_forces(const RigidParticles<2>& particles, const Rows& rows, std::span<Vec<2>> force) const;
+  void add_forces(const RigidParticles<Dim>& particles, const Rows& rows, std::span<Vec<Dim>> force) const;
 
   std::vector<Attraction> laws_;
   std::vector<Rows> rows_;
 };
+using AttractionForces = AttractionForcesOf<2>;
 
 }  // namespace softgrain

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/geometry/ball.hpp"
 #include "softgrain/geometry/support.hpp"
 #include "softgrain/observe/clusters.hpp"
 #include "softgrain/rigid/contact_state.hpp"
@@ -24,8 +24,11 @@ constexpr double largest_mean_overlap = 0.05, largest_overlap = 0.5;
 /// the box are at their random close packing: the overlap is ten times smaller before, and grows tenfold with
 /// each per cent of strain.
 constexpr double close_packing_overlap = 5e-4;
-constexpr double close_packing_fraction = 0.82;
-constexpr double fullest_fraction = 0.95;  // no random packing of disks is as dense, overlaps included
+template <int Dim>
+constexpr double close_packing_fraction = Dim == 2 ? 0.82 : 0.62;
+/// No random packing is as dense, overlaps included.
+template <int Dim>
+constexpr double fullest_fraction = Dim == 2 ? 0.95 : 0.78;
 
 constexpr int first_step_factor = 200;
 
@@ -40,7 +43,8 @@ void refuse_overlaps(const StepReport& report) {
 
 }  // namespace
 
-BondedGrains::BondedGrains(BondedGrainsSetup setup)
+template <int Dim>
+BondedGrainsOf<Dim>::BondedGrainsOf(BondedGrainsSetupOf<Dim> setup)
     : grain_radius_(std::move(setup.grain_radius)),
       density_(setup.density),
       sigma_I_(setup.sigma_I),
@@ -58,7 +62,8 @@ BondedGrains::BondedGrains(BondedGrainsSetup setup)
   work_.energy_start = attraction_.energy(dynamics_.particles) + work_.height_start;
 }
 
-StepReport BondedGrains::step(Box<2>& box, double dt) {
+template <int Dim>
+StepReport BondedGrainsOf<Dim>::step(Box<Dim>& box, double dt) {
   dynamics_.particles.walls = box.walls;
   for (std::size_t w = 0; w < box.walls.size(); ++w)
     set_wall_velocity(dynamics_.particles, static_cast<int>(w), box.walls[w].velocity);
@@ -67,11 +72,11 @@ StepReport BondedGrains::step(Box<2>& box, double dt) {
   if (keeps_problem_) velocity_start_ = dynamics_.particles.velocity;
   dynamics_.options.solver.max_sweeps = most_sweeps_ * (impulse_time_ == 0 ? first_step_factor : 1);
   StepReport report = dynamics_.step(
-      [&](const RigidParticles<2>& particles, std::span<Vec<2>> force) {
+      [&](const RigidParticles<Dim>& particles, std::span<Vec<Dim>> force) {
         const Shares& shares = dynamics_.reference.shares;
         attraction_.update(particles, dynamics_.reference, shares);
         attraction_.add_forces(particles, force, shares);
-        if (gravity_ == Vec<2>{}) return;
+        if (gravity_ == Vec<Dim>{}) return;
         for (int i = 0; i < particles.size(); ++i) force[i] += particles.mass[i] * gravity_;
       },
       dt);
@@ -87,12 +92,14 @@ StepReport BondedGrains::step(Box<2>& box, double dt) {
   return report;
 }
 
-void BondedGrains::gather() {
+template <int Dim>
+void BondedGrainsOf<Dim>::gather() {
   dynamics_.gather();
   attraction_.update(dynamics_.particles, dynamics_.reference);
 }
 
-void BondedGrains::add_work() {
+template <int Dim>
+void BondedGrainsOf<Dim>::add_work() {
   const StepWork& work = dynamics_.work;
   work_.walls += work.wall;
   work_.dissipation -= work.contact + work.push_out;
@@ -101,27 +108,30 @@ void BondedGrains::add_work() {
 }
 
 /// All primaries of a grain alike.
-void BondedGrains::follow(const Mat<2>& L) {
-  RigidParticles<2>& particles = dynamics_.particles;
+template <int Dim>
+void BondedGrainsOf<Dim>::follow(const Mat<Dim>& L) {
+  RigidParticles<Dim>& particles = dynamics_.particles;
   const double before = kinetic_energy(particles);
-  const std::vector<Vec<2>> centre = centres();
+  const std::vector<Vec<Dim>> centre = centres();
   for (int i = 0; i < particles.size(); ++i) particles.velocity[i] += L * centre[particles.grain[i]];
   work_.walls += kinetic_energy(particles) - before;
 }
 
-bool BondedGrains::is_exhausted(const StepReport& report, const Box<2>& box) const {
+template <int Dim>
+bool BondedGrainsOf<Dim>::is_exhausted(const StepReport& report, const Box<Dim>& box) const {
   refuse_overlaps(report);
   if (!box.closed() || report.overlap_mean <= close_packing_overlap) return false;
   const double fraction = solid_fraction(box);
-  if (fraction > fullest_fraction)
+  if (fraction > fullest_fraction<Dim>)
     throw NumericalError(
         fmt::format("primaries fill {:.3f} of the box, more than fits: they have passed through each other "
                     "or the walls; use a smaller time.step or more solver.max_sweeps",
                     fraction));
-  return fraction > close_packing_fraction;
+  return fraction > close_packing_fraction<Dim>;
 }
 
-std::string BondedGrains::exhaustion(const Box<2>& box) const {
+template <int Dim>
+std::string BondedGrainsOf<Dim>::exhaustion(const Box<Dim>& box) const {
   return fmt::format(
       "the rigid primaries fill {:.3f} of the box, their random close packing, and overlap by more than {} "
       "of "
@@ -129,26 +139,30 @@ std::string BondedGrains::exhaustion(const Box<2>& box) const {
       solid_fraction(box), close_packing_overlap);
 }
 
-double BondedGrains::solid_fraction(const Box<2>& box) const {
-  double squares = 0;
-  for (const double r : dynamics_.particles.radius) squares += r * r;
-  return std::numbers::pi * squares / box.volume();
+template <int Dim>
+double BondedGrainsOf<Dim>::solid_fraction(const Box<Dim>& box) const {
+  double filled = 0;
+  for (const double r : dynamics_.particles.radius) filled += times_power<Dim>(1, r);
+  return unit_ball<Dim> * filled / box.volume();
 }
 
-std::pair<double, double> BondedGrains::extent(int axis) const {
+template <int Dim>
+std::pair<double, double> BondedGrainsOf<Dim>::extent(int axis) const {
   const auto& p = dynamics_.particles;
-  Vec<2> along;
+  Vec<Dim> along;
   along[axis] = 1;
-  return {-support(p.position, p.radius, Vec<2>{} - along), support(p.position, p.radius, along)};
+  return {-support<Dim>(p.position, p.radius, Vec<Dim>{} - along), support<Dim>(p.position, p.radius, along)};
 }
 
-std::pair<double, double> BondedGrains::reach() const {
+template <int Dim>
+std::pair<double, double> BondedGrainsOf<Dim>::reach() const {
   const auto [low, high] = extent(0);
   const double reach = 1.1 * grain_radius_.front() + (high - low) / 2;
   return {-reach, reach};
 }
 
-Energies BondedGrains::energies() const {
+template <int Dim>
+Energies BondedGrainsOf<Dim>::energies() const {
   const double kinetic = kinetic_energy(dynamics_.particles);  // at rest before the first step
   const double attraction = attraction_.energy(dynamics_.particles);
   return {.kinetic = kinetic,
@@ -161,14 +175,16 @@ Energies BondedGrains::energies() const {
                    work_.dissipation};
 }
 
-double BondedGrains::energy_of_height() const {
+template <int Dim>
+double BondedGrainsOf<Dim>::energy_of_height() const {
   double energy = 0;
   for (int i = 0; i < dynamics_.particles.size(); ++i)
     energy -= dynamics_.particles.mass[i] * dot(gravity_, dynamics_.particles.position[i]);
   return energy;
 }
 
-int BondedGrains::clusters() const {
+template <int Dim>
+int BondedGrainsOf<Dim>::clusters() const {
   const auto& p = dynamics_.particles;
   std::vector<std::pair<int, int>> links;
   attraction_.for_each_pair([&](int i, int j) {
@@ -178,7 +194,8 @@ int BondedGrains::clusters() const {
   return count_clusters(p.size(), links);
 }
 
-Numbers BondedGrains::numbers(const Box<2>& box) const {
+template <int Dim>
+Numbers BondedGrainsOf<Dim>::numbers(const Box<Dim>& box) const {
   const auto& particles = dynamics_.particles;
   int contacts = 0, inner = 0;
   for (int c = 0; c < dynamics_.contacts.size(); ++c) {
@@ -193,18 +210,20 @@ Numbers BondedGrains::numbers(const Box<2>& box) const {
                   {"attraction_energy", attraction_.energy(particles)},
                   {"dissipation_rearrangement", work_.dissipation - work_.between}};
   if (box.closed()) numbers.emplace_back("solid_fraction", solid_fraction(box));
-  if (!(gravity_ == Vec<2>{})) numbers.emplace_back("gravity_work", work_.height_start - energy_of_height());
+  if (!(gravity_ == Vec<Dim>{})) numbers.emplace_back("gravity_work", work_.height_start - energy_of_height());
   return numbers;
 }
 
-Bodies BondedGrains::bodies() const {
+template <int Dim>
+BodiesOf<Dim> BondedGrainsOf<Dim>::bodies() const {
   const auto& p = dynamics_.particles;
   return {p.mass, {p.velocity.begin(), p.velocity.begin() + p.size()}, p.grain};
 }
 
-std::vector<Vec<2>> BondedGrains::centres() const {
+template <int Dim>
+std::vector<Vec<Dim>> BondedGrainsOf<Dim>::centres() const {
   const auto& particles = dynamics_.particles;
-  std::vector<Vec<2>> centre(grain_radius_.size());
+  std::vector<Vec<Dim>> centre(grain_radius_.size());
   std::vector<double> mass(grain_radius_.size(), 0);
   for (int i = 0; i < particles.size(); ++i) {
     centre[particles.grain[i]] += particles.mass[i] * particles.position[i];
@@ -215,20 +234,24 @@ std::vector<Vec<2>> BondedGrains::centres() const {
 }
 
 /// Grains as stiff as their bonds, ten times sigma_I.
-PressBody BondedGrains::press_body(const Box<2>& box, int axis, double dt) const {
+template <int Dim>
+PressBody BondedGrainsOf<Dim>::press_body(const Box<Dim>& box, int axis, double dt) const {
   return critically_damped(density_, std::sqrt(10 * sigma_I_ / density_), box.length(axis), dt);
 }
 
-void BondedGrains::catch_problem() { keeps_problem_ = true; }
+template <int Dim>
+void BondedGrainsOf<Dim>::catch_problem() { keeps_problem_ = true; }
 
-SolvedContactProblem BondedGrains::caught_problem(double dt) {
+template <int Dim>
+SolvedContactProblem BondedGrainsOf<Dim>::caught_problem(double dt) {
   keeps_problem_ = false;
   return problem_of_step(dynamics_, std::move(velocity_start_), dt);
 }
 
-void BondedGrains::visit(StateVisitor& visit) {
-  RigidParticles<2>& particles = dynamics_.particles;
-  NeighbourReference<2>& reference = dynamics_.reference;
+template <int Dim>
+void BondedGrainsOf<Dim>::visit(StateVisitor& visit) {
+  RigidParticles<Dim>& particles = dynamics_.particles;
+  NeighbourReference<Dim>& reference = dynamics_.reference;
   visit({"position", "m", Owner::body, Role::state, "centres of the primaries"}, particles.position);
   visit({"velocity", "m/s", Owner::body, Role::state, "velocities of primaries, then walls"},
         particles.velocity);
@@ -238,7 +261,7 @@ void BondedGrains::visit(StateVisitor& visit) {
   visit({"list_between", "m", Owner::body, Role::list, "where the list between grains was made"},
         reference.between);
   visit({"list_wall_point", "m", Owner::wall, Role::list, "where the walls were then"}, reference.wall_point);
-  PeriodicCell<2> list_cell = particles.cell;
+  PeriodicCell<Dim> list_cell = particles.cell;
   if (list_cell.any())
     visit_matrix(visit, {"list_cell", "m", Owner::run, Role::list, "lattice vectors of the cell then"},
                  visit.reads() ? list_cell.edges : reference.cell.edges);
@@ -252,7 +275,7 @@ void BondedGrains::visit(StateVisitor& visit) {
   visit({"work_dissipated_sliding", "J/m", Owner::run, Role::sum, "of that by sliding"}, work_.friction);
   visit({"energy_start", "J/m", Owner::run, Role::sum, "potential energies before the first step"},
         work_.energy_start);
-  if (!(gravity_ == Vec<2>{}))
+  if (!(gravity_ == Vec<Dim>{}))
     visit({"height_start", "J/m", Owner::run, Role::sum, "of them that of gravity"}, work_.height_start);
   // the lists are a function of their reference, so they come back in the same order
   if (visit.reads()) {
@@ -263,13 +286,15 @@ void BondedGrains::visit(StateVisitor& visit) {
   visit_impulses(dynamics_.contacts, visit);
 }
 
-Settings BondedGrains::settings() const {
+template <int Dim>
+Settings BondedGrainsOf<Dim>::settings() const {
   return {.friction = friction_.between,
           .wall_friction = friction_.wall,
           .solver_tolerance = dynamics_.options.solver.tolerance};
 }
 
-void BondedGrains::set(const Settings& settings) {
+template <int Dim>
+void BondedGrainsOf<Dim>::set(const Settings& settings) {
   double& tolerance = dynamics_.options.solver.tolerance;
   tolerance = settings.solver_tolerance.value_or(tolerance);
   const FrictionOfPrimaries before = friction_;
@@ -278,11 +303,15 @@ void BondedGrains::set(const Settings& settings) {
   if (friction_ != before) dynamics_.set_friction(friction_.rule(dynamics_.particles.grain));
 }
 
-void BondedGrains::go_on(const Box<2>& box) {
+template <int Dim>
+void BondedGrainsOf<Dim>::go_on(const Box<Dim>& box) {
   dynamics_.particles.walls = box.walls;
   dynamics_.particles.cell = dynamics_.contacts.cell = box.cell;
   detect_contacts(dynamics_.particles, dynamics_.contacts);
   attraction_.update(dynamics_.particles, dynamics_.reference);
 }
+
+template class BondedGrainsOf<2>;
+template class BondedGrainsOf<3>;
 
 }  // namespace softgrain

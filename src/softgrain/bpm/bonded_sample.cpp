@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/geometry/ball.hpp"
 #include "softgrain/geometry/images.hpp"
 
 namespace softgrain {
@@ -42,11 +42,12 @@ int choice_of(const AggregateLibrary& c, int grain, double radius) {
 }
 
 /// Moves grains as wholes out of the walls and out of each other once; returns the largest overlap met [m].
-double push_apart(RigidParticles<2>& particles, std::span<Vec<2>> shift, double widest) {
+template <int Dim>
+double push_apart(RigidParticles<Dim>& particles, std::span<Vec<Dim>> shift, double widest) {
   double worst = 0;
-  std::vector<Vec<2>> push(shift.size());
+  std::vector<Vec<Dim>> push(shift.size());
   std::vector<double> deepest(shift.size(), 0);  // of a grain's overlaps: the one that moves it
-  const auto meet = [&](int grain, double overlap, const Vec<2>& away) {
+  const auto meet = [&](int grain, double overlap, const Vec<Dim>& away) {
     worst = std::max(worst, overlap);
     if (overlap <= deepest[grain]) return;
     deepest[grain] = overlap;
@@ -55,9 +56,9 @@ double push_apart(RigidParticles<2>& particles, std::span<Vec<2>> shift, double 
   const auto& x = particles.position;
   const auto& R = particles.radius;
   for (int i = 0; i < particles.size(); ++i)
-    for (const Wall<2>& wall : particles.walls)
+    for (const Wall<Dim>& wall : particles.walls)
       meet(particles.grain[i], R[i] - dot(x[i] - wall.point, wall.normal), wall.normal);
-  for_each_close_pair<2>(x, particles.cell, 2 * widest, [&](int i, int j, const Vec<2>& d, const auto&) {
+  for_each_close_pair<Dim>(x, particles.cell, 2 * widest, [&](int i, int j, const Vec<Dim>& d, const auto&) {
     const int a = particles.grain[i], b = particles.grain[j];
     if (a == b) return;
     const double r = norm(d), overlap = R[i] + R[j] - r;
@@ -71,13 +72,14 @@ double push_apart(RigidParticles<2>& particles, std::span<Vec<2>> shift, double 
 }
 
 /// Until no overlap is worth a tenth of a per cent of a primary's radius.
-double separate_grains(BpmSample& sample, const BoxSample& box) {
-  std::vector<Vec<2>> shift(box.grains.size());
+template <int Dim>
+double separate_grains(BpmSampleOf<Dim>& sample, const BoxSampleOf<Dim>& box) {
+  std::vector<Vec<Dim>> shift(box.grains.size());
   const auto& radius = sample.particles.radius;
   const double widest = *std::max_element(radius.begin(), radius.end());
   const double tolerance = 1e-3 * *std::min_element(radius.begin(), radius.end());
   constexpr int most_passes = 5000;
-  for (int pass = 0; push_apart(sample.particles, shift, widest) > tolerance; ++pass)
+  for (int pass = 0; push_apart<Dim>(sample.particles, shift, widest) > tolerance; ++pass)
     require(pass < most_passes,
             "could not place {} grains of primaries without overlap; use a smaller sample.packing_fraction",
             box.grains.size());
@@ -87,50 +89,67 @@ double separate_grains(BpmSample& sample, const BoxSample& box) {
   return furthest;
 }
 
+/// A grain as it is turned in its place.
+auto turn_by(double angle) {
+  const Vec<2> along{std::cos(angle), std::sin(angle)};
+  return [along](const Vec<2>& X) { return X[0] * along + X[1] * perpendicular(along); };
+}
+auto turn_by(const Mat<3>& rotation) {
+  return [rotation](const Vec<3>& X) { return rotation * X; };
+}
+
 }  // namespace
 
-std::vector<Aggregate> prepare_library(const AggregateLibrary& c) {
-  std::vector<Aggregate> library;
+template <int Dim>
+std::vector<AggregateOf<Dim>> prepare_library(const AggregateLibrary& c) {
+  std::vector<AggregateOf<Dim>> library;
   for (int k = 0; k < c.count; ++k) {
     const double size = size_of(c, k);
     library.push_back(
-        prepare_aggregate({.primaries = static_cast<int>(std::lround(c.primaries * size * size)),
-                           .size_ratio = c.size_ratio,
-                           .gamma = c.gamma,
-                           .seed = c.seed + (static_cast<std::uint64_t>(k) << 32)}));
+        prepare_aggregate<Dim>({.primaries = static_cast<int>(std::lround(times_power<Dim>(c.primaries, size))),
+                                .size_ratio = c.size_ratio,
+                                .gamma = c.gamma,
+                                .seed = c.seed + (static_cast<std::uint64_t>(k) << 32)}));
   }
   return library;
 }
 
-BpmSample fill_box(const BoxSample& box, const std::vector<Aggregate>& library, const AggregateLibrary& c) {
-  BpmSample sample;
-  std::vector<Vec<2>> position;
+template <int Dim>
+BpmSampleOf<Dim> fill_box(const BoxSampleOf<Dim>& box, const std::vector<AggregateOf<Dim>>& library,
+                          const AggregateLibrary& c) {
+  BpmSampleOf<Dim> sample;
+  std::vector<Vec<Dim>> position;
   std::vector<double> radius, mass;
   std::vector<int> grain_of;
   for (int g = 0; g < static_cast<int>(box.grains.size()); ++g) {
-    const PlacedGrain& grain = box.grains[g];
-    const Aggregate& aggregate = library[choice_of(c, g, grain.radius)];
-    const Vec<2> along{std::cos(grain.angle), std::sin(grain.angle)};
-    double squares = 0;
-    for (const double r : aggregate.radius) squares += r * r;
+    const PlacedGrainOf<Dim>& grain = box.grains[g];
+    const AggregateOf<Dim>& aggregate = library[choice_of(c, g, grain.radius)];
+    const auto turn = turn_by(grain.angle);
+    double filled = 0;
+    for (const double r : aggregate.radius) filled += times_power<Dim>(1, r);
     sample.begin.push_back(static_cast<int>(position.size()));
     sample.mean_distance.push_back(grain.radius * aggregate.mean_distance);
     for (std::size_t i = 0; i < aggregate.radius.size(); ++i) {
-      const Vec<2>& X = aggregate.position[i];
-      position.push_back(grain.centre + grain.radius * (X[0] * along + X[1] * perpendicular(along)));
+      position.push_back(grain.centre + grain.radius * turn(aggregate.position[i]));
       radius.push_back(grain.radius * aggregate.radius[i]);
-      mass.push_back(c.density * std::numbers::pi * radius.back() * radius.back() / squares);
+      mass.push_back(times_power<Dim>(c.density * unit_ball<Dim>, radius.back()) / filled);
       grain_of.push_back(g);
     }
   }
   sample.begin.push_back(static_cast<int>(position.size()));
-  const Box<2> bounds = box_of(box);
+  const Box<Dim> bounds = box_of(box);
   sample.particles =
-      rigid_particles<2>(std::move(position), std::move(radius), std::move(mass), bounds.walls);
+      rigid_particles<Dim>(std::move(position), std::move(radius), std::move(mass), bounds.walls);
   sample.particles.cell = bounds.cell;
   sample.particles.grain = std::move(grain_of);
   sample.displaced = separate_grains(sample, box);
   return sample;
 }
+
+template std::vector<Aggregate> prepare_library<2>(const AggregateLibrary&);
+template std::vector<AggregateOf<3>> prepare_library<3>(const AggregateLibrary&);
+template BpmSample fill_box<2>(const BoxSample&, const std::vector<Aggregate>&, const AggregateLibrary&);
+template BpmSampleOf<3> fill_box<3>(const BoxSampleOf<3>&, const std::vector<AggregateOf<3>>&,
+                                    const AggregateLibrary&);
 
 }  // namespace softgrain

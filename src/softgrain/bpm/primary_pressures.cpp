@@ -1,43 +1,50 @@
 #include "softgrain/bpm/primary_pressures.hpp"
 
-#include <numbers>
-
+#include "softgrain/contact/tangents.hpp"
+#include "softgrain/geometry/ball.hpp"
 #include "softgrain/observe/stress.hpp"
 
 namespace softgrain {
 
-std::vector<double> primary_pressures(const RigidDynamics<2>& dynamics, const AttractionForces& attraction,
+template <int Dim>
+std::vector<double> primary_pressures(const RigidDynamics<Dim>& dynamics,
+                                      const AttractionForcesOf<Dim>& attraction,
                                       std::span<const double> grain_radius, double impulse_time) {
   const auto& particles = dynamics.particles;
   const auto& contacts = dynamics.contacts;
   const int n = particles.size();
-  std::vector<BranchForce> forces;
+  std::vector<BranchForceOf<Dim>> forces;
   for (int c = 0; c < contacts.size(); ++c) {
     if (!(contacts.impulse[c][0] > 0)) continue;
     const int a = contacts.body_a[c], b = contacts.body_b[c];
-    const Vec<2>& normal = contacts.normal[c];
-    const Vec<2> impulse = contacts.impulse[c][0] * normal + contacts.impulse[c][1] * perpendicular(normal);
+    const Vec<Dim>& normal = contacts.normal[c];
     const bool wall = b >= n;
     forces.push_back({.a = a,
                       .b = wall ? -1 : b,
-                      .force = (1 / impulse_time) * impulse,
+                      .force = (1 / impulse_time) * from_local(normal, contacts.impulse[c]),
                       .branch_a = particles.radius[a] * normal,
-                      .branch_b = wall ? Vec<2>{} : -particles.radius[b] * normal});
+                      .branch_b = wall ? Vec<Dim>{} : -particles.radius[b] * normal});
   }
   attraction.for_each_pair([&](int i, int j) {
-    const Vec<2> d = particles.position[j] - particles.position[i];
+    const Vec<Dim> d = particles.position[j] - particles.position[i];
     const double r = norm(d);
     const double F = attraction.law(particles.grain[i]).force(r, particles.radius[i] + particles.radius[j]);
     forces.push_back({.a = i, .b = j, .force = (-F / r) * d, .branch_a = 0.5 * d, .branch_b = -0.5 * d});
   });
-  std::vector<double> squares(grain_radius.size(), 0), area(n);
-  for (int i = 0; i < n; ++i) squares[particles.grain[i]] += particles.radius[i] * particles.radius[i];
+  // the share of a primary in its grain is that of its size in all of them
+  std::vector<double> filled(grain_radius.size(), 0), size(n);
+  for (int i = 0; i < n; ++i) filled[particles.grain[i]] += times_power<Dim>(1, particles.radius[i]);
   for (int i = 0; i < n; ++i) {
-    const double R = grain_radius[particles.grain[i]];
-    area[i] =
-        std::numbers::pi * R * R * particles.radius[i] * particles.radius[i] / squares[particles.grain[i]];
+    const int g = particles.grain[i];
+    const double of_grain = times_power<Dim>(unit_ball<Dim>, grain_radius[g]);
+    size[i] = times_power<Dim>(of_grain, particles.radius[i]) / filled[g];
   }
-  return virial_pressure(forces, area);
+  return virial_pressure(forces, size);
 }
+
+template std::vector<double> primary_pressures<2>(const RigidDynamics<2>&, const AttractionForcesOf<2>&,
+                                                  std::span<const double>, double);
+template std::vector<double> primary_pressures<3>(const RigidDynamics<3>&, const AttractionForcesOf<3>&,
+                                                  std::span<const double>, double);
 
 }  // namespace softgrain

@@ -14,8 +14,19 @@
 namespace softgrain {
 namespace {
 
-/// <a0> of one grain [m]: primaries of equal size that fill pi R^2 at a packing fraction of 0.84.
-double mean_distance(const Case& c) { return 2 * c.grain.radius * std::sqrt(0.84 / c.bpm.primaries); }
+/// <a0> of one grain [m]: primaries of equal size that fill pi R^2 at a packing fraction of 0.84, in space
+/// 4/3 pi R^3 at 0.65.
+double mean_distance(const Case& c) {
+  return 2 * c.grain.radius *
+         (is_in_space(c) ? std::cbrt(0.65 / c.bpm.primaries) : std::sqrt(0.84 / c.bpm.primaries));
+}
+
+/// sigma_I [Pa] of bonded grains.
+double bond_stress(const Case& c) {
+  if (is_in_a_box(c)) return c.bpm.cohesive_pressure;
+  return is_in_space(c) ? cohesive_pressure<3>(c.bpm.force, mean_distance(c))
+                        : cohesive_pressure<2>(c.bpm.attraction, mean_distance(c));
+}
 
 bool flows(const Case& c) { return is_elastic(c) && law_choice(c.mpm.law).flows(); }
 
@@ -25,7 +36,7 @@ double own_stress(const Case& c) {
   if (flows(c)) return c.mpm.material.yield_stress;
   if (is_elastic(c)) return c.mpm.material.young_modulus;
   if (is_rigid(c)) return std::numeric_limits<double>::infinity();
-  return !is_in_a_box(c) ? c.bpm.attraction / mean_distance(c) : c.bpm.cohesive_pressure;
+  return bond_stress(c);
 }
 
 /// Of a grain's own, at which a packing whose case names no stress is judged: a little above jamming.

@@ -1,11 +1,12 @@
 #include <algorithm>
-#include <numbers>
+#include <span>
 
 #include "softgrain/bpm/bonded_grains.hpp"
 #include "softgrain/bpm/bonded_sample.hpp"
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/sample.hpp"
+#include "softgrain/geometry/ball.hpp"
 #include "softgrain/geometry/support.hpp"
 
 namespace softgrain {
@@ -27,68 +28,100 @@ RigidStepOptions rigid_step_options(const Case& c) {
           .precision = c.solver.precision};
 }
 
-/// A grain that touches the walls above and below it.
-RigidParticles<2> single_grain(const Case& c, const Aggregate& aggregate) {
-  std::vector<Vec<2>> position = aggregate.position;
-  std::vector<double> radius = aggregate.radius, mass;
-  double area = 0;  // of the disks over pi
-  for (const double r : radius) area += r * r;
-  const double grain_mass = c.grain.density * std::numbers::pi * c.grain.radius * c.grain.radius;
-  for (const double r : radius) mass.push_back(grain_mass * r * r / area);
-  for (Vec<2>& x : position) x *= c.grain.radius;
-  for (double& r : radius) r *= c.grain.radius;
-  const Box<2> box = walls_at(-support(position, radius, {0, -1}), support(position, radius, {0, 1}));
-  return rigid_particles<2>(std::move(position), std::move(radius), std::move(mass), box.walls);
+/// F0 [N/m], in space [N].
+double attraction_of(const Case& c) { return is_in_space(c) ? c.bpm.force : c.bpm.attraction; }
+
+template <int Dim>
+BoxSampleOf<Dim> box_sample_of(const Case& c) {
+  if constexpr (Dim == 3)
+    return sample_solid_box(c);
+  else
+    return sample_box(c);
 }
 
-BondedGrainsSetup setup_between_walls(const Case& c) {
-  const Aggregate aggregate = prepare_aggregate({.primaries = c.bpm.primaries,
-                                                 .size_ratio = c.bpm.size_ratio,
-                                                 .gamma = c.bpm.exponent,
-                                                 .seed = static_cast<std::uint64_t>(c.sample.seed)});
+/// Walls that the grain touches, below and above it.
+template <int Dim>
+std::vector<Wall<Dim>> touching_walls(std::span<const Vec<Dim>> position, std::span<const double> radius) {
+  Vec<Dim> up;
+  up[Dim - 1] = 1;
+  const double low = -support<Dim>(position, radius, Vec<Dim>{} - up),
+               high = support<Dim>(position, radius, up);
+  if constexpr (Dim == 3)
+    return solid_walls_at(low, high).walls;
+  else
+    return walls_at(low, high).walls;
+}
+
+template <int Dim>
+RigidParticles<Dim> single_grain(const Case& c, const AggregateOf<Dim>& aggregate) {
+  std::vector<Vec<Dim>> position = aggregate.position;
+  std::vector<double> radius = aggregate.radius, mass;
+  double filled = 0;  // by the primaries, over unit_ball
+  for (const double r : radius) filled += times_power<Dim>(1, r);
+  const double grain_mass = times_power<Dim>(c.grain.density * unit_ball<Dim>, c.grain.radius);
+  for (const double r : radius) mass.push_back(times_power<Dim>(grain_mass, r) / filled);
+  for (Vec<Dim>& x : position) x *= c.grain.radius;
+  for (double& r : radius) r *= c.grain.radius;
+  std::vector<Wall<Dim>> walls = touching_walls<Dim>(position, radius);
+  return rigid_particles<Dim>(std::move(position), std::move(radius), std::move(mass), std::move(walls));
+}
+
+template <int Dim>
+BondedGrainsSetupOf<Dim> setup_between_walls(const Case& c) {
+  const auto aggregate =
+      prepare_aggregate<Dim>({.primaries = c.bpm.primaries,
+                              .size_ratio = c.bpm.size_ratio,
+                              .gamma = c.bpm.exponent,
+                              .seed = static_cast<std::uint64_t>(c.sample.seed)});
   const double mean_distance = aggregate.mean_distance * c.grain.radius;
   return {.particles = single_grain(c, aggregate),
           .grain_radius = {c.grain.radius},
-          .laws = {{.F0 = c.bpm.attraction, .gamma = c.bpm.exponent}},
+          .laws = {{.F0 = attraction_of(c), .gamma = c.bpm.exponent}},
           .friction = {},
           .options = {},
           .skin = skin_of_one_grain * aggregate.mean_distance * c.grain.radius,
           .density = 0,
-          .sigma_I = c.bpm.attraction / mean_distance};
+          .sigma_I = cohesive_pressure<Dim>(attraction_of(c), mean_distance)};
 }
 
-/// sigma_I = F0/<a0> is the same in every grain.
-BondedGrainsSetup setup_in_a_box(const Case& c) {
-  const BoxSample box = sample_box(c);
-  BpmSample sample = fill_box(box, prepare_library(library_of(c)), library_of(c));
+/// sigma_I is the same in every grain.
+template <int Dim>
+BondedGrainsSetupOf<Dim> setup_in_a_box(const Case& c) {
+  const BoxSampleOf<Dim> box = box_sample_of<Dim>(c);
+  BpmSampleOf<Dim> sample = fill_box(box, prepare_library<Dim>(library_of(c)), library_of(c));
   const double smallest = *std::min_element(sample.mean_distance.begin(), sample.mean_distance.end());
-  BondedGrainsSetup setup{.particles = std::move(sample.particles),
-                          .grain_radius = {},
-                          .laws = {},
-                          .friction = {},
-                          .options = {},
-                          .skin = skin_in_a_box * smallest,
-                          .density = 0,
-                          .sigma_I = c.bpm.cohesive_pressure};
-  for (const PlacedGrain& grain : box.grains) setup.grain_radius.push_back(grain.radius);
+  BondedGrainsSetupOf<Dim> setup{.particles = std::move(sample.particles),
+                                 .grain_radius = {},
+                                 .laws = {},
+                                 .friction = {},
+                                 .options = {},
+                                 .skin = skin_in_a_box * smallest,
+                                 .density = 0,
+                                 .sigma_I = c.bpm.cohesive_pressure};
+  for (const auto& grain : box.grains) setup.grain_radius.push_back(grain.radius);
   for (const double a0 : sample.mean_distance)
-    setup.laws.push_back({.F0 = c.bpm.cohesive_pressure * a0, .gamma = c.bpm.exponent});
+    setup.laws.push_back(
+        {.F0 = attraction_with<Dim>(c.bpm.cohesive_pressure, a0), .gamma = c.bpm.exponent});
   return setup;
 }
 
 }  // namespace
 
-PlacedModel bonded_grains_of(const Case& c) {
+template <int Dim>
+PlacedModelOf<Dim> bonded_grains_of(const Case& c) {
   const double dt = checked_bonded_time_step(c);
-  BondedGrainsSetup setup = is_in_a_box(c) ? setup_in_a_box(c) : setup_between_walls(c);
+  BondedGrainsSetupOf<Dim> setup = is_in_a_box(c) ? setup_in_a_box<Dim>(c) : setup_between_walls<Dim>(c);
   setup.friction = {
       .inside = c.bpm.inner_friction, .between = c.contact.friction, .wall = c.contact.wall_friction};
   setup.options = rigid_step_options(c);
   setup.density = c.grain.density;
-  setup.gravity = gravity_of(c);
-  Box<2> box(setup.particles.walls);
+  setup.gravity = gravity_of<Dim>(c);
+  Box<Dim> box(setup.particles.walls);
   box.cell = setup.particles.cell;
-  return {std::make_unique<BondedGrains>(std::move(setup)), std::move(box), dt};
+  return {std::make_unique<BondedGrainsOf<Dim>>(std::move(setup)), std::move(box), dt};
 }
+
+template PlacedModelOf<2> bonded_grains_of<2>(const Case&);
+template PlacedModelOf<3> bonded_grains_of<3>(const Case&);
 
 }  // namespace softgrain

@@ -11,8 +11,8 @@
 namespace softgrain {
 namespace {
 
-/// Share of a grain's outline that its primaries fill.
-constexpr double filled = 0.8;
+/// Share of a grain's outline that its primaries fill, and of its volume.
+constexpr double filled = 0.8, filled_in_space = 0.65;
 
 /// Of the step, for the paper's grain [s].
 constexpr double paper_step = 0.25e-6;
@@ -24,24 +24,37 @@ bool between_walls(const Case& c) { return c.experiment.loading == LoadingPath::
 
 /// Radius and mass of the smallest primary of the smallest grain.
 struct SmallestPrimary {
-  double radius, mass;  // [m], [kg/m]
+  double radius, mass;  // [m], [kg/m], in space [kg]
 
   explicit SmallestPrimary(const Case& c) {
     const double R = between_walls(c) ? c.grain.radius : c.sample.smallest_diameter / 2;
-    // diameters uniform from d to s d: <d^2>/d^2
-    const double s = c.bpm.size_ratio, mean_square = (1 + s + s * s) / 3;
-    const double share = 1 / (c.bpm.primaries * mean_square);  // of all primaries' area
-    radius = R * std::sqrt(filled * share);
-    mass = c.grain.density * std::numbers::pi * R * R * share;
+    // diameters uniform from d to s d: <d^2>/d^2, <d^3>/d^3
+    const double s = c.bpm.size_ratio, mean_square = (1 + s + s * s) / 3, mean_cube = (1 + s) * (1 + s * s) / 4;
+    if (is_in_space(c)) {
+      const double share = 1 / (c.bpm.primaries * mean_cube);  // of all primaries' volume
+      radius = R * std::cbrt(filled_in_space * share);
+      mass = c.grain.density * 4 * std::numbers::pi / 3 * R * R * R * share;
+    } else {
+      const double share = 1 / (c.bpm.primaries * mean_square);  // of all primaries' area
+      radius = R * std::sqrt(filled * share);
+      mass = c.grain.density * std::numbers::pi * R * R * share;
+    }
   }
 };
+
+/// F0 [N/m], in space [N], of grains whose primaries touch at <a0> [m] in the mean.
+double attraction_of(const Case& c, double a0) {
+  if (between_walls(c)) return is_in_space(c) ? c.bpm.force : c.bpm.attraction;
+  return is_in_space(c) ? attraction_with<3>(c.bpm.cohesive_pressure, a0)
+                        : attraction_with<2>(c.bpm.cohesive_pressure, a0);
+}
 
 }  // namespace
 
 double bond_period(const Case& c) {
   const SmallestPrimary smallest(c);
   const double mean_a0 = smallest.radius * (1 + c.bpm.size_ratio);
-  const double F0 = between_walls(c) ? c.bpm.attraction : c.bpm.cohesive_pressure * mean_a0;
+  const double F0 = attraction_of(c, mean_a0);
   const double a0 = 2 * smallest.radius;
   return 2 * std::numbers::pi * std::sqrt(smallest.mass * a0 / (2 * c.bpm.exponent * F0));
 }
@@ -57,9 +70,9 @@ double bonded_time_step(const Case& c) {
   const double step = c.time.step > 0 ? c.time.step : stable_bond_step(c);
   require(
       std::isfinite(step) && step > 0,
-      "no time step: bpm.attraction {} N/m, bpm.cohesive_pressure {} Pa, bpm.exponent {} and all lengths and "
+      "no time step: bpm.{} {}, bpm.cohesive_pressure {} Pa, bpm.exponent {} and all lengths and "
       "densities must be > 0",
-      c.bpm.attraction, c.bpm.cohesive_pressure, c.bpm.exponent);
+      is_in_space(c) ? "force" : "attraction", is_in_space(c) ? fmt::format("{} N", c.bpm.force) : fmt::format("{} N/m", c.bpm.attraction), c.bpm.cohesive_pressure, c.bpm.exponent);
   return step;
 }
 

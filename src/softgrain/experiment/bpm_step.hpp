@@ -9,8 +9,20 @@ namespace softgrain {
 ///
 /// Two of the smallest primaries, of mass m and with a0 = 2 r, bonded with F0, have the period
 ///   T = 2 pi sqrt(m a0 / (2 gamma F0)) [s],
-/// that of a spring of stiffness |F'(a0)| = gamma F0/a0. In a box F0 = sigma_I <a0>, in the smallest grain.
+/// that of a spring of stiffness |F'(a0)| = gamma F0/a0. In a box F0 = sigma_I <a0>, in the smallest grain; in
+/// space sigma_I <a0>^2.
 double bond_period(const Case& the_case);
+
+/// sigma_I [Pa] of grains whose primaries attract each other with F0 and touch at <a0> [m] in the mean, and
+/// F0 of a sigma_I: F0 = sigma_I <a0> [N/m], in space sigma_I <a0>^2 [N].
+template <int Dim>
+double cohesive_pressure(double F0, double a0) {
+  return F0 / (Dim == 2 ? a0 : a0 * a0);
+}
+template <int Dim>
+double attraction_with(double sigma_I, double a0) {
+  return sigma_I * (Dim == 2 ? a0 : a0 * a0);
+}
 
 /// T/pi [s], beyond which central differences of that spring have no bound: a longer step is refused.
 double critical_bond_step(const Case& the_case);

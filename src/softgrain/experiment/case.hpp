@@ -72,7 +72,8 @@ struct Case {
     int primaries = 1750;              ///< rigid primary particles in a grain
     double size_ratio = 1.625;         ///< largest over smallest primary diameter (paper: 0.26 mm / 0.16 mm)
     double attraction = 100;           ///< F0 of a grain between walls [N/m]
-    double cohesive_pressure = 0.5e6;  ///< sigma_I = F0/<a0> of each grain of a packing [Pa]
+    double force = 0.2;                ///< the same in space [N]
+    double cohesive_pressure = 0.5e6;  ///< sigma_I = F0/<a0>, or F0/<a0>^2, of each grain of a packing [Pa]
     double exponent = 7;               ///< gamma [-]
     double inner_friction = 0;         ///< mu between the primaries of a grain
     EqualPrimaries equal = EqualPrimaries::count;

@@ -23,7 +23,7 @@ std::unique_ptr<SimulationOf<Dim>> with_loading(const Case& c, PlacedModelOf<Dim
 std::unique_ptr<AnySimulation> create_any_simulation(const Case& c) {
   if (!is_in_space(c)) return create_simulation(c);
   check_loading(c);
-  return with_loading(c, solid_grains_of(c));
+  return with_loading(c, is_bonded(c) ? bonded_grains_of<3>(c) : solid_grains_of(c));
 }
 
 std::unique_ptr<Simulation> create_simulation(const Case& c) {
@@ -31,7 +31,7 @@ std::unique_ptr<Simulation> create_simulation(const Case& c) {
           "not yet: a simulation in memory with experiment.dimension = 3; `softgrain run` carries such a "
           "case out");
   check_loading(c);
-  return with_loading(c, is_bonded(c) ? bonded_grains_of(c) : elastic_grains_of(c));
+  return with_loading(c, is_bonded(c) ? bonded_grains_of<2>(c) : elastic_grains_of(c));
 }
 
 }  // namespace softgrain

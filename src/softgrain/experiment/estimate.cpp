@@ -72,7 +72,8 @@ double loading_time(const Case& c) {
 double primaries(const Case& c) {
   if (!is_in_a_box(c) || c.bpm.equal == EqualPrimaries::count) return grains(c) * c.bpm.primaries;
   const double R = smallest_radius(c);
-  return c.bpm.primaries * grain_area(c) / (std::numbers::pi * R * R);
+  return c.bpm.primaries * grain_area(c) /
+         (is_in_space(c) ? 4 * std::numbers::pi / 3 * R * R * R : std::numbers::pi * R * R);
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ struct PlacedModelOf {
 using PlacedModel = PlacedModelOf<2>;
 
 /// One grain between two walls, or the grains of a box. Raises UsageError.
-PlacedModel bonded_grains_of(const Case& the_case);
+template <int Dim>
+PlacedModelOf<Dim> bonded_grains_of(const Case& the_case);
 PlacedModel elastic_grains_of(const Case& the_case);
 PlacedModelOf<3> solid_grains_of(const Case& the_case);
 

@@ -8,15 +8,12 @@ namespace {
 
 constexpr int most_cells = 24;
 
-}  // namespace
+std::string not_yet(std::string_view what, std::string_view remedy) {
+  return std::string("not yet with experiment.dimension = 3: ").append(what).append("; ").append(remedy);
+}
 
-std::string not_yet_in_space(const Case& c) {
-  if (!is_in_space(c)) return "";
-  const auto not_yet = [](std::string_view what, std::string_view remedy) {
-    return std::string("not yet with experiment.dimension = 3: ").append(what).append("; ").append(remedy);
-  };
-  if (c.experiment.model == GrainModel::bpm)
-    return not_yet("bonded grains", "write experiment.model = \"mpm\" or \"rigid\"");
+/// Of grains that are not bonded.
+std::string not_yet_solid(const Case& c) {
   if (c.mpm.formulation == Formulation::updated_lagrangian)
     return not_yet("mpm.formulation \"updated_lagrangian\"", "write \"total_lagrangian\"");
   if (c.mpm.integrator == Integrator::backward_euler)
@@ -25,16 +22,6 @@ std::string not_yet_in_space(const Case& c) {
         "space "
         "(docs/decisions/0050)",
         "write \"explicit\" or leave it out");
-  if (c.experiment.loading == LoadingPath::shear)
-    return not_yet("shear of a cell", "experiment.loading takes \"triaxial\", or tables [[stage]]");
-  if (c.experiment.loading == LoadingPath::biaxial)
-    return not_yet("the path \"biaxial\", between two walls that rest",
-                   "write \"triaxial\", where four side walls keep the stress, or tables [[stage]]");
-  if (c.sample.places == Places::pour)
-    return not_yet("sample.places \"pour\"", "leave it out: places are random");
-  if (c.box.open_top) return not_yet("box.open_top", "leave it out: six walls hold the spheres");
-  if (c.contact.surface_energy > 0 || c.contact.wall_surface_energy > 0)
-    return not_yet("adhesion", "leave contact.surface_energy and contact.wall_surface_energy out");
   for (int k = 0; k < kinds_of(c); ++k) {
     const Case kind = case_of_kind(c, k);
     if (kind.grain.shape != ShapeOfGrain::disk)
@@ -46,6 +33,23 @@ std::string not_yet_in_space(const Case& c) {
     return not_yet("more than 24 mpm.cells, 32 cells^3 points in a grain",
                    "6 are within 5 %, 8 within 1.5 %");
   return "";
+}
+
+}  // namespace
+
+std::string not_yet_in_space(const Case& c) {
+  if (!is_in_space(c)) return "";
+  if (c.experiment.loading == LoadingPath::shear)
+    return not_yet("shear of a cell", "experiment.loading takes \"triaxial\", or tables [[stage]]");
+  if (c.experiment.loading == LoadingPath::biaxial)
+    return not_yet("the path \"biaxial\", between two walls that rest",
+                   "write \"triaxial\", where four side walls keep the stress, or tables [[stage]]");
+  if (c.sample.places == Places::pour)
+    return not_yet("sample.places \"pour\"", "leave it out: places are random");
+  if (c.box.open_top) return not_yet("box.open_top", "leave it out: six walls hold the spheres");
+  if (c.contact.surface_energy > 0 || c.contact.wall_surface_energy > 0)
+    return not_yet("adhesion", "leave contact.surface_energy and contact.wall_surface_energy out");
+  return is_bonded(c) ? "" : not_yet_solid(c);
 }
 
 void set_defaults_of_space(Case& c, const std::function<bool(const char* key)>& is_given) {

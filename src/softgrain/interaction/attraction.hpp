@@ -12,16 +12,16 @@ namespace softgrain {
 ///   F = F0 (1 + g/a0)^-gamma = F0 (a0/r)^gamma  for r >= a0,   F = F0 under overlap,   0 beyond r = 2 a0.
 /// Positive towards each other.
 struct Attraction {
-  double F0 = 100;   ///< [N/m in 2D]
+  double F0 = 100;   ///< [N/m in the plane, N in space]
   double gamma = 7;  ///< [-]
 
-  /// F [N/m] at distance r [m].
+  /// F [N/m, N in space] at distance r [m].
   double force(double r, double a0) const {
     if (r > 2 * a0) return 0;
     return F0 * std::pow(std::min(1.0, a0 / r), gamma);
   }
 
-  /// Potential [J/m], zero beyond the cut: U(r) = -integral from r to 2 a0 of F.
+  /// Potential [J/m, J in space], zero beyond the cut: U(r) = -integral from r to 2 a0 of F.
   double energy(double r, double a0) const {
     if (r > 2 * a0) return 0;
     if (r < a0) return energy(a0, a0) - F0 * (a0 - r);
@@ -29,7 +29,7 @@ struct Attraction {
     return -F0 * a0 / (gamma - 1) * (std::pow(a0 / r, gamma - 1) - std::pow(0.5, gamma - 1));
   }
 
-  /// F(r)/r for four pairs at once, from r^2 and a0 [N/m^2].
+  /// F(r)/r for four pairs at once, from r^2 and a0 [N/m^2, N/m in space].
   Lanes force_over_distance(Lanes r_squared, Lanes a0) const {
     const Lanes a0_squared = a0 * a0;
     const Lanes closeness = min(a0_squared / r_squared, splat(1));  // min(1, a0^2/r^2)
@@ -59,7 +59,7 @@ struct Attraction {
 
 /// Raises UsageError for a law that cannot hold a grain.
 inline void require_valid(const Attraction& law) {
-  require(law.F0 > 0 && std::isfinite(law.F0), "attraction F0 must be > 0 N/m, got {}", law.F0);
+  require(law.F0 > 0 && std::isfinite(law.F0), "attraction F0 must be > 0, got {}", law.F0);
   require(law.gamma > 0 && std::isfinite(law.gamma), "attraction exponent must be > 0, got {}", law.gamma);
 }
 

@@ -70,6 +70,25 @@ inline void store_columns(const LaneColumns& columns, Vec<2>* rows) {
   scatter_columns(columns, rows, index);
 }
 
+/// The same of vectors in the plane or in space.
+inline Vec<2, Lanes> gather_vectors(const Vec<2>* rows, const int* index) {
+  const LaneColumns columns = gather_columns(rows, index);
+  return {columns.x, columns.y};
+}
+inline Vec<3, Lanes> gather_vectors(const Vec<3>* rows, const int* index) {
+  Vec<3, Lanes> columns;
+  for (int k = 0; k < 3; ++k)
+    columns[k] = Lanes{rows[index[0]][k], rows[index[1]][k], rows[index[2]][k], rows[index[3]][k]};
+  return columns;
+}
+inline void scatter_vectors(const Vec<2, Lanes>& columns, Vec<2>* rows, const int* index) {
+  scatter_columns({columns[0], columns[1]}, rows, index);
+}
+inline void scatter_vectors(const Vec<3, Lanes>& columns, Vec<3>* rows, const int* index) {
+  for (int lane = 0; lane < lane_count; ++lane)
+    for (int k = 0; k < 3; ++k) rows[index[lane]][k] = columns[k][lane];
+}
+
 inline Lanes max(Lanes a, Lanes b) { return a > b ? a : b; }
 inline Lanes min(Lanes a, Lanes b) { return a < b ? a : b; }
 

@@ -41,6 +41,11 @@ inline Narrow::Floats select(decltype(Narrow::Floats{} < Narrow::Floats{}) mask,
   return mask ? a : b;
 }
 
+inline Narrow::Floats sqrt(Narrow::Floats x) {
+  for (int lane = 0; lane < Wide::size; ++lane) x[lane] = std::sqrt(x[lane]);
+  return x;
+}
+
 /// How many numbers a T holds, and one of them.
 template <class T>
 inline constexpr int lanes_of = T::size;

@@ -31,15 +31,25 @@ Mat<Dim> stress_of_motion(std::span<const double> mass, std::span<const Vec<Dim>
   return sigma;
 }
 
+template <int Dim>
+std::vector<double> pressure_of_forces(std::span<const BranchForceOf<Dim>> forces,
+                                       std::span<const double> size) {
+  std::vector<double> pressure(size.size(), 0);
+  for (const BranchForceOf<Dim>& f : forces) {
+    if (f.a >= 0) pressure[f.a] += dot(f.force, f.branch_a) / (Dim * size[f.a]);  // the force on a is -f
+    if (f.b >= 0) pressure[f.b] -= dot(f.force, f.branch_b) / (Dim * size[f.b]);
+  }
+  return pressure;
+}
+
 }  // namespace
 
 std::vector<double> virial_pressure(std::span<const BranchForce> forces, std::span<const double> area) {
-  std::vector<double> pressure(area.size(), 0);
-  for (const BranchForce& f : forces) {
-    if (f.a >= 0) pressure[f.a] += dot(f.force, f.branch_a) / (2 * area[f.a]);  // the force on a is -f
-    if (f.b >= 0) pressure[f.b] -= dot(f.force, f.branch_b) / (2 * area[f.b]);
-  }
-  return pressure;
+  return pressure_of_forces(forces, area);
+}
+std::vector<double> virial_pressure(std::span<const BranchForceOf<3>> forces,
+                                    std::span<const double> volume) {
+  return pressure_of_forces(forces, volume);
 }
 
 Mat<2> contact_stress(std::span<const ContactPoint> contacts, std::span<const Vec<2>> centre, double area) {

@@ -7,18 +7,21 @@
 
 namespace softgrain {
 
-/// A force between two bodies: the force of a on b [N/m], and the branches from the centres to the point
+/// A force between two bodies: the force of a on b [N/m, N in space], and the branches from the centres to the point
 /// where it acts [m].
-struct BranchForce {
+template <int Dim>
+struct BranchForceOf {
   int a = 0, b = 0;  ///< indices of particles; -1 for a body whose stress is not asked for (a wall)
-  Vec<2> force;      ///< on b; -force acts on a
-  Vec<2> branch_a, branch_b;
+  Vec<Dim> force;    ///< on b; -force acts on a
+  Vec<Dim> branch_a, branch_b;
 };
+using BranchForce = BranchForceOf<2>;
 
 /// Pressure of each particle from the virial of its forces (Love-Weber), compression positive:
 ///   p_i = -(1/2 A_i) sum_c f_c . l_c  [Pa], with f_c the force on i and l_c from its centre to where the
-///   force acts.
+///   force acts; in space over 3 V_i.
 std::vector<double> virial_pressure(std::span<const BranchForce> forces, std::span<const double> area);
+std::vector<double> virial_pressure(std::span<const BranchForceOf<3>> forces, std::span<const double> volume);
 
 /// Stress of a packing in a box of the given area [m^2] (Love-Weber, theory (62)), compression positive:
 ///   sigma = (1/V) sum_c f_c (x) l_c  [Pa],

@@ -10,17 +10,19 @@
 namespace softgrain {
 namespace {
 
-std::pair<std::int64_t, std::int64_t> pair_of(const RigidContacts<2>& contacts, int c) {
+template <int Dim>
+std::pair<std::int64_t, std::int64_t> pair_of(const RigidContacts<Dim>& contacts, int c) {
   return {contacts.body_a[c], contacts.body_b[c]};
 }
 
 }  // namespace
 
-void visit_impulses(RigidContacts<2>& contacts, StateVisitor& visit) {
+template <int Dim>
+void visit_impulses(RigidContacts<Dim>& contacts, StateVisitor& visit) {
   std::vector<std::int64_t> pairs;
-  std::vector<Vec<2>> impulse;
+  std::vector<Vec<Dim>> impulse;
   for (int c = 0; c < contacts.size(); ++c) {
-    if (contacts.impulse[c] == Vec<2>{}) continue;
+    if (contacts.impulse[c] == Vec<Dim>{}) continue;
     pairs.insert(pairs.end(), {contacts.body_a[c], contacts.body_b[c]});
     impulse.push_back(contacts.impulse[c]);
   }
@@ -34,7 +36,7 @@ void visit_impulses(RigidContacts<2>& contacts, StateVisitor& visit) {
   std::iota(sorted.begin(), sorted.end(), 0);
   const auto by_pair = [&](int c) { return pair_of(contacts, c); };
   std::sort(sorted.begin(), sorted.end(), [&](int a, int b) { return by_pair(a) < by_pair(b); });
-  std::fill(contacts.impulse.begin(), contacts.impulse.end(), Vec<2>{});
+  std::fill(contacts.impulse.begin(), contacts.impulse.end(), Vec<Dim>{});
   for (std::size_t k = 0; k < impulse.size(); ++k) {
     const std::pair wanted(pairs[2 * k], pairs[2 * k + 1]);
     const auto found = std::lower_bound(sorted.begin(), sorted.end(), wanted,
@@ -46,5 +48,8 @@ void visit_impulses(RigidContacts<2>& contacts, StateVisitor& visit) {
     contacts.impulse[*found] = impulse[k];
   }
 }
+
+template void visit_impulses<2>(RigidContacts<2>&, StateVisitor&);
+template void visit_impulses<3>(RigidContacts<3>&, StateVisitor&);
 
 }  // namespace softgrain

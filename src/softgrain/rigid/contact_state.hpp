@@ -7,6 +7,7 @@ namespace softgrain {
 /// Declares the impulses of contacts that carry one, with their bodies: the order of a list depends on the
 /// friction of its contacts, which a run that goes on may change. Raises IoError for contacts that the list
 /// does not have.
-void visit_impulses(RigidContacts<2>& contacts, StateVisitor& visit);
+template <int Dim>
+void visit_impulses(RigidContacts<Dim>& contacts, StateVisitor& visit);
 
 }  // namespace softgrain

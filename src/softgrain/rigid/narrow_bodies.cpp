@@ -5,7 +5,8 @@
 
 namespace softgrain {
 
-void NarrowSweeps::take_bodies(const RigidParticles<2>& particles, const RigidContacts<2>& contacts,
+template <int Dim>
+void NarrowSweepsOf<Dim>::take_bodies(const RigidParticles<Dim>& particles, const RigidContacts<Dim>& contacts,
                                double relaxation) {
   bodies_ = static_cast<int>(particles.velocity.size());
   if (relaxation_ != static_cast<float>(relaxation)) blocks_.clear();
@@ -36,15 +37,15 @@ void NarrowSweeps::take_bodies(const RigidParticles<2>& particles, const RigidCo
     }
   parallel_ranges(bodies_, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
-      const Vec<2>& v = particles.velocity[i];
-      velocity_[i] = {static_cast<float>(v[0]), static_cast<float>(v[1])};
-      spin_[i] = static_cast<float>(particles.spin[i][0]);
+      for (int k = 0; k < Dim; ++k) velocity_[i].c[k] = static_cast<float>(particles.velocity[i][k]);
+      for (int k = 0; k < spin_size<Dim>; ++k) spin_[i].c[k] = static_cast<float>(particles.spin[i][k]);
     }
   });
 }
 
 /// The bodies of a grain that have contacts inside it.
-void NarrowSweeps::take_range(const RigidContacts<2>& contacts, const ContactBlock& listed, Block& block) {
+template <int Dim>
+void NarrowSweepsOf<Dim>::take_range(const RigidContacts<Dim>& contacts, const ContactBlock& listed, Block& block) {
   block.bodies = {bodies_, 0};
   for (int c = listed.begin(); c < listed.end(); ++c) {
     block.bodies.begin = std::min(block.bodies.begin, contacts.body_a[c]);
@@ -53,7 +54,8 @@ void NarrowSweeps::take_range(const RigidContacts<2>& contacts, const ContactBlo
 }
 
 /// Bodies of grains that have contacts between grains.
-void NarrowSweeps::take_touched(const RigidContacts<2>& contacts, const ContactBlock& between) {
+template <int Dim>
+void NarrowSweepsOf<Dim>::take_touched(const RigidContacts<Dim>& contacts, const ContactBlock& between) {
   std::vector<int> bodies;
   for (int c = between.begin(); c < between.end(); ++c)
     bodies.push_back(contacts.body_a[c]), bodies.push_back(contacts.body_b[c]);
@@ -72,5 +74,10 @@ void NarrowSweeps::take_touched(const RigidContacts<2>& contacts, const ContactB
     touched_bodies_.push_back(body);
   }
 }
+
+template void NarrowSweepsOf<2>::take_bodies(const RigidParticles<2>&, const RigidContacts<2>&, double);
+template void NarrowSweepsOf<3>::take_bodies(const RigidParticles<3>&, const RigidContacts<3>&, double);
+template void NarrowSweepsOf<2>::take_range(const RigidContacts<2>&, const ContactBlock&, Block&);
+template void NarrowSweepsOf<3>::take_range(const RigidContacts<3>&, const ContactBlock&, Block&);
 
 }  // namespace softgrain

@@ -6,12 +6,13 @@
 namespace softgrain {
 namespace {
 
-/// Disks in grains as a BlockSystem: `narrow` with the contacts that it leaves out, which take their turns
+/// Disks (spheres) in grains as a BlockSystem: `narrow` with the contacts that it leaves out, which take their turns
 /// alone after the others between grains.
+template <int Dim>
 class GrainBlocks {
  public:
-  GrainBlocks(NarrowSweeps& narrow, NarrowSweeps::System& system, PushedBodies& pressed,
-              RigidContacts<2>& contacts, double relaxation)
+  GrainBlocks(NarrowSweepsOf<Dim>& narrow, typename NarrowSweepsOf<Dim>::System& system, PushedBodies& pressed,
+              RigidContacts<Dim>& contacts, double relaxation)
       : narrow_(narrow), system_(system), pressed_(pressed), contacts_(contacts), relaxation_(relaxation) {
     for (const Pushing& of : pressed.contacts) alone_.push_back(of.contact);
     for (int c = contacts.first_crossing(); c < contacts.size(); ++c) alone_.push_back(c);
@@ -28,29 +29,29 @@ class GrainBlocks {
     narrow_.go_ahead_between(b);
     pressed_.extrapolate(b);
     for (std::size_t k = 0; k < alone_.size(); ++k) {
-      Vec<2>& p = contacts_.impulse[alone_[k]];
-      const Vec<2> last = p;
+      Vec<Dim>& p = contacts_.impulse[alone_[k]];
+      const Vec<Dim> last = p;
       extrapolate(p, before_[k], b);
       if (!(p == last)) system_.apply_impulse(alone_[k], p - last);
     }
   }
   Violation sweep_between(bool measured) {
     Violation violation = narrow_.sweep_between(measured);
-    pressed_.sweep<2>(system_, contacts_.impulse, contacts_.friction, relaxation_, violation);
+    pressed_.template sweep<Dim>(system_, contacts_.impulse, contacts_.friction, relaxation_, violation);
     for (int c = contacts_.first_crossing(); c < contacts_.size(); ++c)
-      nlgs_update<2>(system_, c, contacts_.impulse[c], contacts_.friction[c], relaxation_, violation);
+      nlgs_update<Dim>(system_, c, contacts_.impulse[c], contacts_.friction[c], relaxation_, violation);
     narrow_.end_sweep();
     return violation;
   }
 
  private:
-  NarrowSweeps& narrow_;
-  NarrowSweeps::System& system_;
+  NarrowSweepsOf<Dim>& narrow_;
+  typename NarrowSweepsOf<Dim>::System& system_;
   PushedBodies& pressed_;
-  RigidContacts<2>& contacts_;
+  RigidContacts<Dim>& contacts_;
   double relaxation_;
   std::vector<int> alone_;
-  std::vector<Vec<2>> before_;
+  std::vector<Vec<Dim>> before_;
 };
 
 }  // namespace
@@ -58,33 +59,30 @@ class GrainBlocks {
 template <int Dim>
 SolverReport RigidDynamics<Dim>::solve_in_single_precision(RigidContactSystem<Dim>& system,
                                                            const SolverOptions& solver, double dt) {
-  SolverReport report;
-  if constexpr (Dim == 2) {
-    narrow_.start(
-        particles, contacts, [&](int begin, int end) { prepare(begin, end, dt); }, offset_, solver.relaxation,
-        reference.shares);
-    NarrowSweeps::System alone(narrow_, particles, contacts, offset_);
-    PushedBodies pressed = pressed_walls(dt);
-    GrainBlocks grains(narrow_, alone, pressed, contacts, solver.relaxation);
-    report = BlockSweeps().solve(grains, solver.velocity_scale, solver);
-    for_each_block(
-        contacts, reference.shares,
-        [&](int k) {
-          narrow_.read_impulses(contacts.blocks[k], contacts.impulse);
-          system.apply_impulses(k, contacts.impulse);
-          overlaps_[k] = overlaps_of(contacts.blocks[k]);
-        },
-        [&](int k, Message& message) {
-          const GrainRange& grain = reference.grains[contacts.blocks[k].list];
-          const auto of_grain = [&](auto& rows) {
-            message(std::span(rows).subspan(grain.begin, grain.end - grain.begin));
-          };
-          of_grain(particles.velocity);
-          of_grain(particles.spin);  // n x (p n) is round-off, not 0
-          message(overlaps_[k]);
-        });
-    move_presses(dt);
-  }
+  narrow_.start(
+      particles, contacts, [&](int begin, int end) { prepare(begin, end, dt); }, offset_, solver.relaxation,
+      reference.shares);
+  typename NarrowSweepsOf<Dim>::System alone(narrow_, particles, contacts, offset_);
+  PushedBodies pressed = pressed_walls(dt);
+  GrainBlocks<Dim> grains(narrow_, alone, pressed, contacts, solver.relaxation);
+  const SolverReport report = BlockSweeps().solve(grains, solver.velocity_scale, solver);
+  for_each_block(
+      contacts, reference.shares,
+      [&](int k) {
+        narrow_.read_impulses(contacts.blocks[k], contacts.impulse);
+        system.apply_impulses(k, contacts.impulse);
+        overlaps_[k] = overlaps_of(contacts.blocks[k]);
+      },
+      [&](int k, Message& message) {
+        const GrainRange& grain = reference.grains[contacts.blocks[k].list];
+        const auto of_grain = [&](auto& rows) {
+          message(std::span(rows).subspan(grain.begin, grain.end - grain.begin));
+        };
+        of_grain(particles.velocity);
+        of_grain(particles.spin);  // n x (p n) is round-off, not 0
+        message(overlaps_[k]);
+      });
+  move_presses(dt);
   return report;
 }
 

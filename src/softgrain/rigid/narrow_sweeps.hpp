@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -7,23 +8,25 @@
 #include "softgrain/math/narrow.hpp"
 #include "softgrain/rigid/contact_blocks.hpp"
 #include "softgrain/rigid/contacts.hpp"
+#include "softgrain/rigid/narrow_rows.hpp"
 #include "softgrain/rigid/neighbours.hpp"
 #include "softgrain/rigid/particles.hpp"
 
 namespace softgrain {
 
-/// NLGS over disks in single precision, eight contacts at once: the law of RigidContactSystem<2>::sweep,
-/// block by block (docs/decisions/0022). Positions, gaps and the velocities that a step leaves stay in
+/// NLGS over disks (spheres) in single precision, eight contacts at once: the law of
+/// RigidContactSystem::sweep, block by block (docs/decisions/0022). Positions, gaps and the velocities that a step leaves stay in
 /// double: they follow from the impulses found here, which act on both bodies alike. Same bits on any number
 /// of threads.
-class NarrowSweeps {
+template <int Dim>
+class NarrowSweepsOf {
  public:
   /// Starts from the free velocities of the bodies and the impulses of the contacts, which act at once.
   /// `prepare(begin, end)` makes sure of normals, impulses and `offset` (m) [m/s], as from signorini_offset,
   /// of these contacts; omega = `relaxation`.
   /// Ranks have their shares of the blocks until the next start.
   template <class Prepare>
-  void start(const RigidParticles<2>& particles, const RigidContacts<2>& contacts, const Prepare& prepare,
+  void start(const RigidParticles<Dim>& particles, const RigidContacts<Dim>& contacts, const Prepare& prepare,
              std::span<const double> offset, double relaxation, const Shares& shares = {}) {
     take_bodies(particles, contacts, relaxation);
     shares_ = shares;
@@ -54,23 +57,27 @@ class NarrowSweeps {
   class System;
 
   /// The impulses found, (p_n, p_t) [N s/m], of a block of contacts.
-  void read_impulses(const ContactBlock& listed, std::span<Vec<2>> impulse) const;
+  void read_impulses(const ContactBlock& listed, std::span<Vec<Dim>> impulse) const;
 
  private:
   using Floats = Narrow::Floats;
   static constexpr int eight = Wide::size;
 
-  /// Velocity of a body [m/s].
-  struct Velocity {
-    float x, y;
-  };
+  using Velocity = NarrowRow<Dim>;  // of a body [m/s]
+  using Turn = NarrowRow<spin_size<Dim>>;
+  using Vector = Vec<Dim, Floats>;
+  using Tangential = Vec<Dim - 1, Floats>;
+  using Turning = Vec<spin_size<Dim>, Floats>;
   /// Contacts that share no particle. Lanes left over hold a contact of a body at rest with itself.
   struct Eight {
     int a[eight], b[eight];
-    Floats n_x, n_y, inverse_a, inverse_b, gain, offset, p_n, p_n_before;  // gain: omega / W_nn
+    Vector n;
+    Floats inverse_a, inverse_b, gain, offset, p_n, p_n_before;  // gain: omega / W_nn
   };
   struct FrictionalEight : Eight {
-    Floats friction, p_t, p_t_before;
+    Floats friction;
+    Tangential p_t, p_t_before;
+    std::array<Vector, Dim == 2 ? 0 : 2> t;  // tangents; in the plane (-n_y, n_x)
   };
   /// The contacts begin .. begin + count - 1 of a block are an Eight.
   struct Place {
@@ -98,23 +105,29 @@ class NarrowSweeps {
   struct Touched {
     int body, list;
     Velocity velocity{};
-    float spin = 0;
+    Turn spin{};
   };
   struct Bodies;
 
-  void take_bodies(const RigidParticles<2>& particles, const RigidContacts<2>& contacts, double relaxation);
-  void take_contacts(const RigidContacts<2>& contacts, const ContactBlock& listed,
+  void take_bodies(const RigidParticles<Dim>& particles, const RigidContacts<Dim>& contacts, double relaxation);
+  void take_contacts(const RigidContacts<Dim>& contacts, const ContactBlock& listed,
                      std::span<const double> offset);
   template <class AnyEight>
-  void fill(const RigidContacts<2>& contacts, const ContactBatch& listed, int begin, int idle,
+  void fill(const RigidContacts<Dim>& contacts, const ContactBatch& listed, int begin, int idle,
             Batch<AnyEight>& batch) const;
   template <class AnyEight>
-  void load(const RigidContacts<2>& contacts, std::span<const double> offset, const ContactBlock& listed,
+  void load(const RigidContacts<Dim>& contacts, std::span<const double> offset, const ContactBlock& listed,
             Batch<AnyEight>& batch);
-  /// ds = -kappa p_t/m on both bodies, whose spins are s_a and s_b.
-  void turn(const Eight& contact, Floats s_a, Floats s_b, Floats p_t);
-  void take_range(const RigidContacts<2>& contacts, const ContactBlock& listed, Block& block);
-  void take_touched(const RigidContacts<2>& contacts, const ContactBlock& between);
+  /// n dp_n and what a change of p_t adds to it: an impulse in the frame of the world.
+  static Vector impulse_of(const Eight& contact, const Floats& dp_n);
+  static Vector impulse_of(const FrictionalEight& contact, const Floats& dp_n, const Tangential& dp_t);
+  /// u_t of bodies whose velocities differ by du and whose spins add up to s.
+  static Tangential slip_of(const FrictionalEight& contact, const Vector& du, const Turning& s);
+  /// ds = -kappa n x P/m on both bodies, whose spins are s_a and s_b.
+  void turn(const FrictionalEight& contact, const Turning& s_a, const Turning& s_b, const Tangential& p_t);
+  static void load_tangents(FrictionalEight& contact);
+  void take_range(const RigidContacts<Dim>& contacts, const ContactBlock& listed, Block& block);
+  void take_touched(const RigidContacts<Dim>& contacts, const ContactBlock& between);
   void pass_touched(const Block& block, Message& message);
   Violation sweep_block(int block, double ahead, bool measured);
   template <bool Ahead, bool Measured>
@@ -127,9 +140,9 @@ class NarrowSweeps {
   std::vector<Block> blocks_;       // by ContactBlock::list
   std::vector<int> listed_;         // those that have contacts, in the order of the sweep
   std::vector<Velocity> velocity_;  // of the bodies, then of one at rest for each block
-  std::vector<float> spin_;
+  std::vector<Turn> spin_;
   std::vector<Velocity> start_, end_;  // of the bodies of grains in the last turn of their block
-  std::vector<float> spin_start_, spin_end_;
+  std::vector<Turn> spin_start_, spin_end_;
   std::vector<int> list_of_;  // of bodies; -1: no grain's
   std::vector<Touched> touched_;
   std::vector<int> touched_bodies_;
@@ -137,21 +150,23 @@ class NarrowSweeps {
   int bodies_ = 0, sweeps_ = 0;
   float relaxation_ = 1, inertia_ratio_ = 2;
 };
+using NarrowSweeps = NarrowSweepsOf<2>;
 
-class NarrowSweeps::System {
+template <int Dim>
+class NarrowSweepsOf<Dim>::System {
  public:
   /// Keeps references.
-  System(NarrowSweeps& sweeps, const RigidParticles<2>& particles, const RigidContacts<2>& contacts,
+  System(NarrowSweepsOf& sweeps, const RigidParticles<Dim>& particles, const RigidContacts<Dim>& contacts,
          std::span<const double> offset);
 
   int size() const { return contacts_.size(); }
-  Mat<2> delassus_block(int contact) const;
-  Vec<2> relative_velocity(int contact) const;
-  void apply_impulse(int contact, const Vec<2>& dp);
+  Mat<Dim> delassus_block(int contact) const;
+  Vec<Dim> relative_velocity(int contact) const;
+  void apply_impulse(int contact, const Vec<Dim>& dp);
 
  private:
-  NarrowSweeps& sweeps_;
-  const RigidContacts<2>& contacts_;
+  NarrowSweepsOf& sweeps_;
+  const RigidContacts<Dim>& contacts_;
   std::span<const double> offset_;
   double inertia_ratio_;
 };

@@ -176,8 +176,7 @@ SolverReport RigidDynamics<Dim>::solve(double dt) {
   for (const Press& press : particles.presses) set_press_speed(particles, press, press.speed);
   contacts.cell = particles.cell;
   RigidContactSystem<Dim> system(particles, contacts, offset_);
-  if (Dim == 2 && options.precision == Precision::single)
-    return solve_in_single_precision(system, solver, dt);
+  if (options.precision == Precision::single) return solve_in_single_precision(system, solver, dt);
   parallel_ranges(contacts.size(), [&](int begin, int end) { prepare(begin, end, dt); });
   PushedBodies pressed = pressed_walls(dt);
   system.push(pressed);

@@ -22,7 +22,7 @@ struct RigidStepOptions {
   SolverOptions
       solver;  ///< velocity_scale 0: 2 <R> / dt, so that the tolerance is overlap per step over diameter
   ContactLaw law;
-  Precision precision = Precision::full;  ///< of the sweeps, in the plane
+  Precision precision = Precision::full;  ///< of the sweeps
 };
 
 /// Work done in one step by each cause [J/m in 2D]; the sum of force, contact and wall is the change
@@ -110,7 +110,7 @@ class RigidDynamics {
   std::vector<Vec<Dim>> velocity_kept_, pushes_;  // of push_out
   std::vector<double> frictionless_;
   RigidContacts<Dim> replaced_;  // its memory serves the next list
-  NarrowSweeps narrow_;
+  NarrowSweepsOf<Dim> narrow_;
   std::vector<Overlaps> overlaps_;  // of each block
   std::vector<bool> pressed_;       // (walls) those of presses when the list of contacts was made
   double mean_radius_ = 0;

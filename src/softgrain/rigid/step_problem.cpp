@@ -9,8 +9,9 @@ namespace softgrain {
 namespace {
 
 /// Those that the law can answer; `offset` is of all, and then of these.
-RigidContacts<2> active_contacts(const RigidContacts<2>& all, std::vector<double>& offset) {
-  RigidContacts<2> active;
+template <int Dim>
+RigidContacts<Dim> active_contacts(const RigidContacts<Dim>& all, std::vector<double>& offset) {
+  RigidContacts<Dim> active;
   active.cell = all.cell;
   std::vector<double> kept;
   for (int c = 0; c < all.size(); ++c) {
@@ -32,17 +33,21 @@ RigidContacts<2> active_contacts(const RigidContacts<2>& all, std::vector<double
 
 }  // namespace
 
-SolvedContactProblem problem_of_step(const RigidDynamics<2>& dynamics, std::vector<Vec<2>> velocity_start,
+template <int Dim>
+SolvedContactProblem problem_of_step(const RigidDynamics<Dim>& dynamics, std::vector<Vec<Dim>> velocity_start,
                                      double dt) {
-  RigidParticles<2> particles = dynamics.particles;
+  RigidParticles<Dim> particles = dynamics.particles;
   const int n = particles.size();
   std::copy(particles.velocity.begin() + n, particles.velocity.end(), velocity_start.begin() + n);  // walls
   std::vector<double> offset;
-  signorini_offset<2>(dynamics.contacts, velocity_start, dynamics.options.law, dt, offset);
-  const RigidContacts<2> contacts = active_contacts(dynamics.contacts, offset);
-  RigidContactSystem<2> system(particles, contacts, offset);
+  signorini_offset<Dim>(dynamics.contacts, velocity_start, dynamics.options.law, dt, offset);
+  const RigidContacts<Dim> contacts = active_contacts(dynamics.contacts, offset);
+  RigidContactSystem<Dim> system(particles, contacts, offset);
   for (int c = 0; c < system.size(); ++c) system.apply_impulse(c, -contacts.impulse[c]);  // v_free again
-  return {contact_problem_of<2>(system, contacts.friction), flat<2>(contacts.impulse)};
+  return {contact_problem_of<Dim>(system, contacts.friction), flat<Dim>(contacts.impulse)};
 }
+
+template SolvedContactProblem problem_of_step<2>(const RigidDynamics<2>&, std::vector<Vec<2>>, double);
+template SolvedContactProblem problem_of_step<3>(const RigidDynamics<3>&, std::vector<Vec<3>>, double);
 
 }  // namespace softgrain

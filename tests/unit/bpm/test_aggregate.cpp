@@ -23,7 +23,7 @@ TEST_CASE("a grain is prepared with unit radius about its centre of area") {
     }
   }
   CHECK(norm(moment) < 1e-14);
-  const OutlineShape shape = outline_shape(grain.position, grain.radius, {0, 0});
+  const OutlineShape shape = outline_shape<2>(grain.position, grain.radius, {0, 0});
   CHECK(shape.mean_radius == doctest::Approx(1).epsilon(1e-13));
   CHECK(grain.roundness == doctest::Approx(shape.roundness).epsilon(1e-10));
   const auto [smallest, largest] = std::minmax_element(grain.radius.begin(), grain.radius.end());

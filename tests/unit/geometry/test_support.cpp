@@ -38,7 +38,7 @@ double hull_perimeter(std::vector<Vec<2>> x) {
 TEST_CASE("the outline of one disk is a circle, seen from its centre") {
   const std::vector<Vec<2>> x{{3, -2}};
   const std::vector<double> radius{0.7};
-  const OutlineShape shape = outline_shape(x, radius, x[0]);
+  const OutlineShape shape = outline_shape<2>(x, radius, x[0]);
   CHECK(shape.mean_radius == doctest::Approx(0.7).epsilon(1e-14));
   CHECK(shape.roundness < 1e-14);
 }
@@ -47,7 +47,7 @@ TEST_CASE("seen from off its centre a circle keeps its mean radius but is not ro
   // h(theta) = R - d cos(theta): mean R, spread 2 d
   const std::vector<Vec<2>> x{{3, -2}};
   const std::vector<double> radius{0.7};
-  const OutlineShape shape = outline_shape(x, radius, {2.9, -2});
+  const OutlineShape shape = outline_shape<2>(x, radius, {2.9, -2});
   CHECK(shape.mean_radius == doctest::Approx(0.7).epsilon(1e-13));
   CHECK(shape.roundness == doctest::Approx(0.2 / 0.7).epsilon(1e-12));
 }
@@ -61,10 +61,10 @@ TEST_CASE("the support of points on an ellipse is sqrt(a^2 cos^2 + b^2 sin^2)") 
   const std::vector<double> radius(x.size(), 0.1);
   for (const double angle : {0.0, 0.4, 1.3, 2.2, 4.0}) {
     const double cosine = std::cos(angle), sine = std::sin(angle);
-    CHECK(support(x, radius, {cosine, sine}) ==
+    CHECK(support<2>(x, radius, {cosine, sine}) ==
           doctest::Approx(std::sqrt(a * a * cosine * cosine + b * b * sine * sine) + 0.1).epsilon(1e-6));
   }
-  const OutlineShape shape = outline_shape(x, radius, {0, 0});
+  const OutlineShape shape = outline_shape<2>(x, radius, {0, 0});
   CHECK(shape.mean_radius == doctest::Approx(9.688448220547674 / (2 * pi) + 0.1).epsilon(1e-6));  // Ramanujan
   CHECK(shape.roundness == doctest::Approx((a - b) / shape.mean_radius).epsilon(1e-6));
 }
@@ -74,6 +74,6 @@ TEST_CASE("the mean support is the perimeter of the hull over 2 pi") {
   std::vector<Vec<2>> x(60);
   for (Vec<2>& point : x) point = random.vector<2>(1);
   const double R = 0.3;  // equal disks: the hull of the centres, widened by R, is longer by 2 pi R
-  const OutlineShape shape = outline_shape(x, std::vector<double>(x.size(), R), {0.1, 0.2}, 100000);
+  const OutlineShape shape = outline_shape<2>(x, std::vector<double>(x.size(), R), {0.1, 0.2}, 100000);
   CHECK(shape.mean_radius == doctest::Approx(hull_perimeter(x) / (2 * pi) + R).epsilon(1e-8));
 }

@@ -42,6 +42,7 @@ std::vector<FormKey> all_forms() {
       stands_for("kind.diameter.numbers", {"sample.numbers"}, "how many grains have each diameter of the list, in proportion"),
       stands_for("kind.law.name", {"mpm.law"}, "law of the material (mpm)"),
       stands_for("kind.law.attraction", {"bpm.attraction"}, "attraction between touching primaries (bpm between walls)"),
+      stands_for("kind.law.force", {"bpm.force"}, "the same in space"),
       stands_for("kind.law.cohesive_pressure", {"bpm.cohesive_pressure"}, "internal cohesive pressure (bpm in a box)"),
       stands_for("kind.law.exponent", {"bpm.exponent"}, "exponent of the attraction (bpm)"),
       stands_for("kind.law.inner_friction", {"bpm.inner_friction"}, "friction between primaries of one grain (bpm)"),

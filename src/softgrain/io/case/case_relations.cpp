@@ -266,7 +266,7 @@ const std::vector<Relation>& case_relations() {
       {{"time.step"}, bond_step_too_long},
       {{"contact.restitution", "contact.activation"}, restitution_anticipated},
       {{"time.step", "loading.wall_velocity", "loading.max_strain", "grain.radius", "grain.density",
-        "bpm.attraction", "bpm.cohesive_pressure", "bpm.primaries", "bpm.size_ratio", "bpm.exponent",
+        "bpm.attraction", "bpm.force", "bpm.cohesive_pressure", "bpm.primaries", "bpm.size_ratio", "bpm.exponent",
         "sample.smallest_diameter"},
        too_many_steps},
       {{"mpm.formulation", "mpm.contact_on", "experiment.loading", "mpm.law"}, formulation_cannot},

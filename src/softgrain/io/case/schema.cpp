@@ -62,7 +62,7 @@ std::vector<Key> all_keys() {
           "how a grain is modelled; bpm: an aggregate of rigid primary particles that attract each other; mpm: an "
           "elastic body by the material point method; rigid: a rigid body, which meets others as those of mpm do"),
       KEY(experiment.dimension, "", from_to(2, 3),
-          "of space; 2: disks, everything per metre of depth; 3: spheres, of model mpm and not yet all the rest "
+          "of space; 2: disks, everything per metre of depth; 3: spheres, not yet with all the rest "
           "(docs/guide/three-dimensions.md)"),
 
       KEY(grain.radius, "mm", positive(), "radius R of the grain", between_walls),
@@ -77,9 +77,11 @@ std::vector<Key> all_keys() {
           "number of primary particles in a grain; in a box: in each, or in the smallest (bpm.equal)", with_bpm),
       KEY(bpm.size_ratio, "", from_to(1, largest_size_ratio), "largest over smallest primary diameter", with_bpm),
       KEY(bpm.attraction, "N/m", positive(),
-          "attraction F0 between touching primaries of the grain, per metre of depth (diametral)", bpm_between_walls),
+          "attraction F0 between touching primaries of the grain, per metre of depth (diametral)", bpm_between_walls_in_plane),
+      KEY(bpm.force, "N", positive(),
+          "the same attraction F0 in space (diametral)", bpm_between_walls_in_space),
       KEY(bpm.cohesive_pressure, "MPa", positive(),
-          "internal cohesive pressure sigma_I = F0/<a0>, the same in all grains: F0 follows the size of their "
+          "internal cohesive pressure sigma_I = F0/<a0>, in space F0/<a0>^2, the same in all grains: F0 follows the size of their "
           "primaries (in a box)", bpm_in_a_box),
       KEY(bpm.exponent, "", at_least(1),
           "exponent gamma of F0 (a0/r)^gamma, r the distance of the centres, a0 the sum of the radii", with_bpm),
