@@ -128,17 +128,18 @@ def unloadings(strain, stress, still=None):
 
 
 def characteristic_stress(run):
-    """sigma_I = F0/<a0> [Pa] (the paper, section 3); None for elastic grains, which have none, and if the run does not say.
+    """sigma_I = F0/<a0> [Pa] (the paper, section 3), in space F0/<a0>^2; None for elastic grains, which have none, and if the run does not say.
 
     From the series; else with the mean primary diameter of the first snapshot for <a0>."""
     if run.elastic:
         return None
     if "sigma_I" in run.series:
         return float(run.series["sigma_I"][0])
-    attraction = run.case.get("bpm", {}).get("attraction")
+    attraction = run.case.get("bpm", {}).get("force" if run.in_space else "attraction")
     if attraction is None or len(run) == 0:
         return None
-    return attraction / (2 * run[0].particles["radius"].mean())
+    a0 = 2 * run[0].particles["radius"].mean()
+    return attraction / (a0**2 if run.in_space else a0)
 
 
 def contact_pressure(snapshot):

@@ -10,6 +10,8 @@ FOLDER = tempfile.TemporaryDirectory()
 OUTPUT = {"snapshots": 6, "samples": 60, "report": False, "vtk": False}
 CASES = {
     "bonded": {"bpm": {"primaries": 60}, "loading": {"wall_velocity": "2 m/s", "max_strain": 0.1, "unload_at": [0.05]}},
+    "bonded_spheres": {"experiment": {"model": "bpm", "loading": "isotropic", "dimension": 3}, "bpm": {"primaries": 20, "library": 1},
+                       "sample": {"grains": 4, "packing_fraction": 0.3}, "loading": {"wall_velocity": "10 m/s", "max_strain": 0.35, "unload_at": []}},
     "elastic": {"experiment": {"model": "mpm"}, "mpm": {"cells": 4}, "loading": {"max_strain": 0.2, "unload_at": []}},
     "packing": {"experiment": {"model": "mpm", "loading": "compaction"}, "mpm": {"cells": 4}, "contact": {"friction": 0.3},
                 "sample": {"grains": 6, "packing_fraction": 0.6}, "loading": {"wall_velocity": "5 m/s", "max_strain": 0.4}},

@@ -18,8 +18,12 @@ import numpy as np
 import softgrain
 from softgrain import plot, solids, view
 from softgrain.export.__main__ import main as export
+from softgrain.export.contacts import contact_table
+from softgrain.export.particles import write_xyz
 from softgrain.movie import film_of
 from softgrain.movie.__main__ import main as movie
+
+from small_runs import small_run
 
 COLUMNS = "time[s],strain,stress_bottom[Pa],stress_top[Pa]\n"
 
@@ -52,6 +56,32 @@ class InSpace(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.run_in_space = softgrain.open(write_run_in_space(folder.name))
+
+
+class BondedSpheres(unittest.TestCase):
+    """Grains whose particles are their primaries."""
+
+    def test_surfaces_are_drawn_and_hold_the_primaries(self):
+        run = small_run("bonded_spheres")
+        last = run[-1]
+        self.assertEqual(len(run.plot.grain().axes), len(run) + 1 if len(run) < 4 else 5)
+        corners, grain = solids.triangles(last)
+        volume = np.bincount(grain, np.einsum("ti,ti->t", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6)
+        filled = np.bincount(last.particles["grain"], 4 / 3 * np.pi * last.particles["radius"] ** 3)
+        share = filled / volume  # a dense packing, whose pores the surface closes
+        self.assertTrue(((share > 0.5) & (share < 0.95)).all(), share)
+        self.assertFalse(solids.of_grains(last))
+
+    def test_other_programs_get_primaries_as_spheres_and_contacts_of_grains(self):
+        run = small_run("bonded_spheres")
+        text = io.StringIO()
+        write_xyz([run[-1]], text)
+        lines = text.getvalue().splitlines()
+        self.assertEqual(len(lines), 2 + 80)
+        self.assertNotIn("aspherical_shape", lines[1])
+        table = contact_table(run[-1])
+        self.assertTrue((table["grain_a"] < 4).all() and len(table["a"]) > 4)
+        self.assertTrue((table["normal_force"] > 0).all())
 
 
 class Pictures(InSpace):

@@ -26,6 +26,7 @@ class Curve:
     plateau: measure.Plateau | None  # of a bonded grain between walls; all other stresses rise all the way
     still: np.ndarray | None = None  # of each step from a sample to the next whether its stage only holds
     elastic_grain: bool = False  # one grain, which unloads as it was loaded and is smooth
+    in_space: bool = False
 
 
 def draw_curve(runs, labels=None, normalise=False):
@@ -40,7 +41,7 @@ def draw_curve(runs, labels=None, normalise=False):
     else:
         _draw_overlay(axes, curves)
     if characteristic is not None:
-        _draw_characteristic_stress(upper_axes, characteristic, normalise)
+        _draw_characteristic_stress(upper_axes, characteristic, normalise, all(c.in_space for c in curves))
     axes.set_xlabel(r"cumulative axial strain $\varepsilon$")
     axes.set_ylabel(r"vertical stress $\sigma/\sigma_I$" if normalise else r"vertical stress $\sigma$ [MPa]")
     axes.set_xlim(0, max(c.strain.max() for c in curves) * 1.02 or 0.01)
@@ -65,7 +66,7 @@ def _curve(run, label, normalise):
     scale = sigma_i if normalise else 1e6
     strain, packing = run.series["strain"], "phi" in run.series
     flat = None if packing or run.elastic else measure.plateau(strain, stress / scale)
-    return Curve(label, strain, stress / scale, scale, sigma_i, flat, measure.held(run.series), run.elastic and not packing)
+    return Curve(label, strain, stress / scale, scale, sigma_i, flat, measure.held(run.series), run.elastic and not packing, run.in_space)
 
 
 def _common_characteristic_stress(curves):
@@ -162,7 +163,7 @@ def _stress_text(stress, curve):
     return rf"{text} = {pascal / curve.characteristic_stress:.2f}$\,\sigma_I$"
 
 
-def _draw_characteristic_stress(axes, value, normalise):
-    """The line at sigma_I = F0/<a0>, the paper's characteristic stress."""
+def _draw_characteristic_stress(axes, value, normalise, in_space):
+    """The line at sigma_I = F0/<a0>, the paper's characteristic stress; in space F0/<a0>^2."""
     equals = "" if normalise else f" = {value:.2f} MPa"
-    axes.axhline(value, color=GREY, lw=0.8, ls=(0, (1, 1.2)), label=rf"$\sigma_I = F_0/\langle a_0\rangle${equals}")
+    axes.axhline(value, color=GREY, lw=0.8, ls=(0, (1, 1.2)), label=rf"$\sigma_I = F_0/\langle a_0\rangle{'^2' if in_space else ''}${equals}")

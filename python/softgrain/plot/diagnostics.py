@@ -47,7 +47,7 @@ def draw_diagnostics(run):
     millimetres(figure, LEFT, RIGHT, AXIS_HEIGHT, TOP, hspace=0.12)
     grid = figure.subplots(len(panels), sharex=True, squeeze=False)
     for axes, letter, panel in zip(grid[:, 0], "abcdef", panels):
-        _draw_panel(axes, series, panel)
+        _draw_panel(axes, series, panel, run.in_space)
         axes.annotate(f"({letter})", (0, 1), xytext=(3, -3), xycoords="axes fraction",
                       textcoords="offset points", va="top")
     grid[-1, 0].set_xlabel(r"cumulative axial strain $\varepsilon$")
@@ -55,7 +55,8 @@ def draw_diagnostics(run):
     return figure
 
 
-def _draw_panel(axes, series, panel):
+def _draw_panel(axes, series, panel, in_space):
+    """In space energies and forces are not per metre of depth."""
     shown = 0
     for column, (label, colour) in panel.lines.items():
         if column not in series:
@@ -66,7 +67,7 @@ def _draw_panel(axes, series, panel):
         if np.isfinite(values).any():
             axes.plot(series["strain"], values, color=colour, lw=0.5, label=label)
             shown += bool(label)
-    axes.set_ylabel(panel.label, va="center")
+    axes.set_ylabel(panel.label.replace("/m]", "]") if in_space else panel.label, va="center")
     axes.yaxis.set_label_coords(LABEL * MM, 0.5,
                                 transform=blended_transform_factory(axes.figure.dpi_scale_trans, axes.transAxes))
     if panel.logarithmic:

@@ -25,7 +25,8 @@ class AttractionForcesOf {
   void update(const RigidParticles<Dim>& particles, const NeighbourReference<Dim>& reference,
               const Shares& shares = {});
 
-  /// F_i += sum_j F(r_ij) (x_j - x_i)/r_ij  [N/m, N in space]; with shares each rank needs the lists of its own grains.
+  /// F_i += sum_j F(r_ij) (x_j - x_i)/r_ij  [N/m, N in space]; with shares each rank needs the lists of its
+  /// own grains.
   void add_forces(const RigidParticles<Dim>& particles, std::span<Vec<Dim>> force,
                   const Shares& shares = {}) const;
 

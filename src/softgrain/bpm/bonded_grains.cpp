@@ -7,7 +7,6 @@
 #include "softgrain/geometry/ball.hpp"
 #include "softgrain/geometry/support.hpp"
 #include "softgrain/observe/clusters.hpp"
-#include "softgrain/rigid/contact_state.hpp"
 #include "softgrain/rigid/step_problem.hpp"
 
 namespace softgrain {
@@ -25,7 +24,7 @@ constexpr double largest_mean_overlap = 0.05, largest_overlap = 0.5;
 /// each per cent of strain.
 constexpr double close_packing_overlap = 5e-4;
 template <int Dim>
-constexpr double close_packing_fraction = Dim == 2 ? 0.82 : 0.62;
+constexpr double close_packing_fraction = Dim == 2 ? 0.82 : 0.55;
 /// No random packing is as dense, overlaps included.
 template <int Dim>
 constexpr double fullest_fraction = Dim == 2 ? 0.95 : 0.78;
@@ -210,7 +209,8 @@ Numbers BondedGrainsOf<Dim>::numbers(const Box<Dim>& box) const {
                   {"attraction_energy", attraction_.energy(particles)},
                   {"dissipation_rearrangement", work_.dissipation - work_.between}};
   if (box.closed()) numbers.emplace_back("solid_fraction", solid_fraction(box));
-  if (!(gravity_ == Vec<Dim>{})) numbers.emplace_back("gravity_work", work_.height_start - energy_of_height());
+  if (!(gravity_ == Vec<Dim>{}))
+    numbers.emplace_back("gravity_work", work_.height_start - energy_of_height());
   return numbers;
 }
 
@@ -240,75 +240,14 @@ PressBody BondedGrainsOf<Dim>::press_body(const Box<Dim>& box, int axis, double 
 }
 
 template <int Dim>
-void BondedGrainsOf<Dim>::catch_problem() { keeps_problem_ = true; }
+void BondedGrainsOf<Dim>::catch_problem() {
+  keeps_problem_ = true;
+}
 
 template <int Dim>
 SolvedContactProblem BondedGrainsOf<Dim>::caught_problem(double dt) {
   keeps_problem_ = false;
   return problem_of_step(dynamics_, std::move(velocity_start_), dt);
-}
-
-template <int Dim>
-void BondedGrainsOf<Dim>::visit(StateVisitor& visit) {
-  RigidParticles<Dim>& particles = dynamics_.particles;
-  NeighbourReference<Dim>& reference = dynamics_.reference;
-  visit({"position", "m", Owner::body, Role::state, "centres of the primaries"}, particles.position);
-  visit({"velocity", "m/s", Owner::body, Role::state, "velocities of primaries, then walls"},
-        particles.velocity);
-  visit({"spin", "m/s", Owner::body, Role::state, "R omega of primaries, then walls"}, particles.spin);
-  visit({"list_position", "m", Owner::body, Role::list, "where the lists inside grains were made"},
-        reference.position);
-  visit({"list_between", "m", Owner::body, Role::list, "where the list between grains was made"},
-        reference.between);
-  visit({"list_wall_point", "m", Owner::wall, Role::list, "where the walls were then"}, reference.wall_point);
-  PeriodicCell<Dim> list_cell = particles.cell;
-  if (list_cell.any())
-    visit_matrix(visit, {"list_cell", "m", Owner::run, Role::list, "lattice vectors of the cell then"},
-                 visit.reads() ? list_cell.edges : reference.cell.edges);
-  visit(
-      {"impulse_time", "s", Owner::run, Role::start, "the step over which impulses acted; 0: none was made"},
-      impulse_time_);
-  visit({"work_of_walls", "J/m", Owner::run, Role::sum, "done by the walls"}, work_.walls);
-  visit({"work_dissipated", "J/m", Owner::run, Role::sum, "in all contacts"}, work_.dissipation);
-  visit({"work_dissipated_between", "J/m", Owner::run, Role::sum, "of it between grains and at walls"},
-        work_.between);
-  visit({"work_dissipated_sliding", "J/m", Owner::run, Role::sum, "of that by sliding"}, work_.friction);
-  visit({"energy_start", "J/m", Owner::run, Role::sum, "potential energies before the first step"},
-        work_.energy_start);
-  if (!(gravity_ == Vec<Dim>{}))
-    visit({"height_start", "J/m", Owner::run, Role::sum, "of them that of gravity"}, work_.height_start);
-  // the lists are a function of their reference, so they come back in the same order
-  if (visit.reads()) {
-    restore_reference(reference, particles, std::move(reference.position), std::move(reference.between),
-                      std::move(reference.wall_point), list_cell);
-    dynamics_.rebuild_contacts();
-  }
-  visit_impulses(dynamics_.contacts, visit);
-}
-
-template <int Dim>
-Settings BondedGrainsOf<Dim>::settings() const {
-  return {.friction = friction_.between,
-          .wall_friction = friction_.wall,
-          .solver_tolerance = dynamics_.options.solver.tolerance};
-}
-
-template <int Dim>
-void BondedGrainsOf<Dim>::set(const Settings& settings) {
-  double& tolerance = dynamics_.options.solver.tolerance;
-  tolerance = settings.solver_tolerance.value_or(tolerance);
-  const FrictionOfPrimaries before = friction_;
-  friction_.between = settings.friction.value_or(before.between);
-  friction_.wall = settings.wall_friction.value_or(before.wall);
-  if (friction_ != before) dynamics_.set_friction(friction_.rule(dynamics_.particles.grain));
-}
-
-template <int Dim>
-void BondedGrainsOf<Dim>::go_on(const Box<Dim>& box) {
-  dynamics_.particles.walls = box.walls;
-  dynamics_.particles.cell = dynamics_.contacts.cell = box.cell;
-  detect_contacts(dynamics_.particles, dynamics_.contacts);
-  attraction_.update(dynamics_.particles, dynamics_.reference);
 }
 
 template class BondedGrainsOf<2>;

@@ -29,7 +29,7 @@ struct FrictionOfPrimaries {
 /// Grains of bonded primaries as they are placed.
 template <int Dim>
 struct BondedGrainsSetupOf {
-  RigidParticles<Dim> particles;       ///< grain after grain
+  RigidParticles<Dim> particles;     ///< grain after grain
   std::vector<double> grain_radius;  ///< of the undeformed grains [m]
   std::vector<Attraction> laws;      ///< of each grain
   FrictionOfPrimaries friction;

@@ -105,11 +105,11 @@ std::vector<AggregateOf<Dim>> prepare_library(const AggregateLibrary& c) {
   std::vector<AggregateOf<Dim>> library;
   for (int k = 0; k < c.count; ++k) {
     const double size = size_of(c, k);
-    library.push_back(
-        prepare_aggregate<Dim>({.primaries = static_cast<int>(std::lround(times_power<Dim>(c.primaries, size))),
-                                .size_ratio = c.size_ratio,
-                                .gamma = c.gamma,
-                                .seed = c.seed + (static_cast<std::uint64_t>(k) << 32)}));
+    library.push_back(prepare_aggregate<Dim>(
+        {.primaries = static_cast<int>(std::lround(times_power<Dim>(c.primaries, size))),
+         .size_ratio = c.size_ratio,
+         .gamma = c.gamma,
+         .seed = c.seed + (static_cast<std::uint64_t>(k) << 32)}));
   }
   return library;
 }

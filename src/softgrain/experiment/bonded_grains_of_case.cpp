@@ -68,11 +68,10 @@ RigidParticles<Dim> single_grain(const Case& c, const AggregateOf<Dim>& aggregat
 
 template <int Dim>
 BondedGrainsSetupOf<Dim> setup_between_walls(const Case& c) {
-  const auto aggregate =
-      prepare_aggregate<Dim>({.primaries = c.bpm.primaries,
-                              .size_ratio = c.bpm.size_ratio,
-                              .gamma = c.bpm.exponent,
-                              .seed = static_cast<std::uint64_t>(c.sample.seed)});
+  const auto aggregate = prepare_aggregate<Dim>({.primaries = c.bpm.primaries,
+                                                 .size_ratio = c.bpm.size_ratio,
+                                                 .gamma = c.bpm.exponent,
+                                                 .seed = static_cast<std::uint64_t>(c.sample.seed)});
   const double mean_distance = aggregate.mean_distance * c.grain.radius;
   return {.particles = single_grain(c, aggregate),
           .grain_radius = {c.grain.radius},
@@ -100,8 +99,7 @@ BondedGrainsSetupOf<Dim> setup_in_a_box(const Case& c) {
                                  .sigma_I = c.bpm.cohesive_pressure};
   for (const auto& grain : box.grains) setup.grain_radius.push_back(grain.radius);
   for (const double a0 : sample.mean_distance)
-    setup.laws.push_back(
-        {.F0 = attraction_with<Dim>(c.bpm.cohesive_pressure, a0), .gamma = c.bpm.exponent});
+    setup.laws.push_back({.F0 = attraction_with<Dim>(c.bpm.cohesive_pressure, a0), .gamma = c.bpm.exponent});
   return setup;
 }
 

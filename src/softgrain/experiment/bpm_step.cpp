@@ -29,7 +29,8 @@ struct SmallestPrimary {
   explicit SmallestPrimary(const Case& c) {
     const double R = between_walls(c) ? c.grain.radius : c.sample.smallest_diameter / 2;
     // diameters uniform from d to s d: <d^2>/d^2, <d^3>/d^3
-    const double s = c.bpm.size_ratio, mean_square = (1 + s + s * s) / 3, mean_cube = (1 + s) * (1 + s * s) / 4;
+    const double s = c.bpm.size_ratio, mean_square = (1 + s + s * s) / 3,
+                 mean_cube = (1 + s) * (1 + s * s) / 4;
     if (is_in_space(c)) {
       const double share = 1 / (c.bpm.primaries * mean_cube);  // of all primaries' volume
       radius = R * std::cbrt(filled_in_space * share);
@@ -68,11 +69,12 @@ double stable_bond_step(const Case& c) {
 
 double bonded_time_step(const Case& c) {
   const double step = c.time.step > 0 ? c.time.step : stable_bond_step(c);
-  require(
-      std::isfinite(step) && step > 0,
-      "no time step: bpm.{} {}, bpm.cohesive_pressure {} Pa, bpm.exponent {} and all lengths and "
-      "densities must be > 0",
-      is_in_space(c) ? "force" : "attraction", is_in_space(c) ? fmt::format("{} N", c.bpm.force) : fmt::format("{} N/m", c.bpm.attraction), c.bpm.cohesive_pressure, c.bpm.exponent);
+  require(std::isfinite(step) && step > 0,
+          "no time step: bpm.{} {}, bpm.cohesive_pressure {} Pa, bpm.exponent {} and all lengths and "
+          "densities must be > 0",
+          is_in_space(c) ? "force" : "attraction",
+          is_in_space(c) ? fmt::format("{} N", c.bpm.force) : fmt::format("{} N/m", c.bpm.attraction),
+          c.bpm.cohesive_pressure, c.bpm.exponent);
   return step;
 }
 

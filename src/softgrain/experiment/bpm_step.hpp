@@ -9,8 +9,8 @@ namespace softgrain {
 ///
 /// Two of the smallest primaries, of mass m and with a0 = 2 r, bonded with F0, have the period
 ///   T = 2 pi sqrt(m a0 / (2 gamma F0)) [s],
-/// that of a spring of stiffness |F'(a0)| = gamma F0/a0. In a box F0 = sigma_I <a0>, in the smallest grain; in
-/// space sigma_I <a0>^2.
+/// that of a spring of stiffness |F'(a0)| = gamma F0/a0. In a box F0 = sigma_I <a0>, in the smallest grain;
+/// in space sigma_I <a0>^2.
 double bond_period(const Case& the_case);
 
 /// sigma_I [Pa] of grains whose primaries attract each other with F0 and touch at <a0> [m] in the mean, and

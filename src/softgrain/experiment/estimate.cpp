@@ -192,9 +192,10 @@ double disk(const Case& c, const Estimate& e) {
   const double by_the_clock = c.output.snapshot_every > 0 ? 3600 * e.hours / c.output.snapshot_every : 0;
   const double frames =
       std::min(c.output.snapshots + by_the_clock, e.steps) + static_cast<double>(stages_written(c));
-  if (is_in_space(c)) return frames * (20e3 + 25 * e.particles);
-  const double bytes_of_particle = (bpm ? 280 : 150) + (c.output.vtk ? 75 : 0);
-  return frames * (20e3 + bytes_of_particle * e.particles + (bpm ? 900 * grains(c) : 0));
+  if (is_in_space(c) && !bpm) return frames * (20e3 + 25 * e.particles);
+  const double of_bonded = is_in_space(c) ? 430 : 280, of_surface = is_in_space(c) ? 10e3 : 900;
+  const double bytes_of_particle = (bpm ? of_bonded : 150) + (c.output.vtk ? 75 : 0);
+  return frames * (20e3 + bytes_of_particle * e.particles + (bpm ? of_surface * grains(c) : 0));
 }
 
 /// Peak of a whole run [bytes], as measured: the program, its state, and a snapshot while it is written. A
@@ -223,7 +224,8 @@ Estimate estimate(const Case& the_case) {
   const bool bpm = is_bonded(the_case);
   Estimate result;
   result.particles = bpm ? primaries(the_case) : points(the_case);
-  result.contacts = bpm ? 2.2 * result.particles : grains(the_case) * 3.3 * the_case.mpm.cells;
+  const double contacts_of_primary = is_in_space(the_case) ? 4.2 : 2.2;
+  result.contacts = bpm ? contacts_of_primary * result.particles : grains(the_case) * 3.3 * the_case.mpm.cells;
   result.steps = std::round(loading_time(the_case) / first_time_step(the_case));
   result.memory = memory(the_case, result);
   result.hours =

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstring>
 
 #include "softgrain/math/vec.hpp"
@@ -70,23 +71,14 @@ inline void store_columns(const LaneColumns& columns, Vec<2>* rows) {
   scatter_columns(columns, rows, index);
 }
 
-/// The same of vectors in the plane or in space.
-inline Vec<2, Lanes> gather_vectors(const Vec<2>* rows, const int* index) {
-  const LaneColumns columns = gather_columns(rows, index);
-  return {columns.x, columns.y};
-}
-inline Vec<3, Lanes> gather_vectors(const Vec<3>* rows, const int* index) {
-  Vec<3, Lanes> columns;
-  for (int k = 0; k < 3; ++k)
-    columns[k] = Lanes{rows[index[0]][k], rows[index[1]][k], rows[index[2]][k], rows[index[3]][k]};
-  return columns;
-}
-inline void scatter_vectors(const Vec<2, Lanes>& columns, Vec<2>* rows, const int* index) {
-  scatter_columns({columns[0], columns[1]}, rows, index);
-}
-inline void scatter_vectors(const Vec<3, Lanes>& columns, Vec<3>* rows, const int* index) {
-  for (int lane = 0; lane < lane_count; ++lane)
-    for (int k = 0; k < 3; ++k) rows[index[lane]][k] = columns[k][lane];
+/// Rows of four numbers as columns, and back.
+inline std::array<Lanes, 4> transpose_rows(Lanes row0, Lanes row1, Lanes row2, Lanes row3) {
+  const Lanes xz01 = __builtin_shufflevector(row0, row1, 0, 4, 2, 6),
+              yw01 = __builtin_shufflevector(row0, row1, 1, 5, 3, 7),
+              xz23 = __builtin_shufflevector(row2, row3, 0, 4, 2, 6),
+              yw23 = __builtin_shufflevector(row2, row3, 1, 5, 3, 7);
+  return {__builtin_shufflevector(xz01, xz23, 0, 1, 4, 5), __builtin_shufflevector(yw01, yw23, 0, 1, 4, 5),
+          __builtin_shufflevector(xz01, xz23, 2, 3, 6, 7), __builtin_shufflevector(yw01, yw23, 2, 3, 6, 7)};
 }
 
 inline Lanes max(Lanes a, Lanes b) { return a > b ? a : b; }

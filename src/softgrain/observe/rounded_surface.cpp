@@ -60,8 +60,8 @@ DirectionGrid::DirectionGrid(int cells) {
   flat_area = area_of(quad, direction);
 }
 
-RoundedSurface rounded_surface(std::span<const Vec<3>> position, std::span<const double> radius,
-                               double probe, const DirectionGrid& grid) {
+RoundedSurface rounded_surface(std::span<const Vec<3>> position, std::span<const double> radius, double probe,
+                               const DirectionGrid& grid) {
   Vec<3> middle;
   double total = 0;
   for (std::size_t i = 0; i < position.size(); ++i) {

@@ -32,7 +32,7 @@ struct RoundedSurface {
 /// Notches narrower than the probe are bridged, and pores inside do not exist; a single sphere is met at its
 /// own surface. Where a ray meets nothing, r = 0. The area is that of the quads, over the share of a sphere's
 /// that they have.
-RoundedSurface rounded_surface(std::span<const Vec<3>> position, std::span<const double> radius,
-                               double probe, const DirectionGrid& grid);
+RoundedSurface rounded_surface(std::span<const Vec<3>> position, std::span<const double> radius, double probe,
+                               const DirectionGrid& grid);
 
 }  // namespace softgrain

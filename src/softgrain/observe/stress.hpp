@@ -7,8 +7,8 @@
 
 namespace softgrain {
 
-/// A force between two bodies: the force of a on b [N/m, N in space], and the branches from the centres to the point
-/// where it acts [m].
+/// A force between two bodies: the force of a on b [N/m, N in space], and the branches from the centres to
+/// the point where it acts [m].
 template <int Dim>
 struct BranchForceOf {
   int a = 0, b = 0;  ///< indices of particles; -1 for a body whose stress is not asked for (a wall)

@@ -6,8 +6,8 @@
 namespace softgrain {
 
 template <int Dim>
-void NarrowSweepsOf<Dim>::take_bodies(const RigidParticles<Dim>& particles, const RigidContacts<Dim>& contacts,
-                               double relaxation) {
+void NarrowSweepsOf<Dim>::take_bodies(const RigidParticles<Dim>& particles,
+                                      const RigidContacts<Dim>& contacts, double relaxation) {
   bodies_ = static_cast<int>(particles.velocity.size());
   if (relaxation_ != static_cast<float>(relaxation)) blocks_.clear();
   relaxation_ = static_cast<float>(relaxation);
@@ -45,7 +45,8 @@ void NarrowSweepsOf<Dim>::take_bodies(const RigidParticles<Dim>& particles, cons
 
 /// The bodies of a grain that have contacts inside it.
 template <int Dim>
-void NarrowSweepsOf<Dim>::take_range(const RigidContacts<Dim>& contacts, const ContactBlock& listed, Block& block) {
+void NarrowSweepsOf<Dim>::take_range(const RigidContacts<Dim>& contacts, const ContactBlock& listed,
+                                     Block& block) {
   block.bodies = {bodies_, 0};
   for (int c = listed.begin(); c < listed.end(); ++c) {
     block.bodies.begin = std::min(block.bodies.begin, contacts.body_a[c]);

@@ -33,8 +33,8 @@ template <int Dim>
 }
 template <int Dim>
 [[gnu::always_inline]] inline auto NarrowSweepsOf<Dim>::impulse_of(const FrictionalEight& c,
-                                                                   const Floats& dp_n,
-                                                                   const Tangential& dp_t) -> Vector {
+                                                                   const Floats& dp_n, const Tangential& dp_t)
+    -> Vector {
   if constexpr (Dim == 2) {
     return {dp_n * c.n[0] - dp_t[0] * c.n[1], dp_n * c.n[1] + dp_t[0] * c.n[0]};
   } else {

@@ -14,8 +14,8 @@ using Integers = int __attribute__((vector_size(32)));
 /// Each Eight takes the contacts that follow until one shares a particle with those before.
 template <int Dim>
 template <class AnyEight>
-void NarrowSweepsOf<Dim>::fill(const RigidContacts<Dim>& contacts, const ContactBatch& listed, int begin, int idle,
-                        Batch<AnyEight>& batch) const {
+void NarrowSweepsOf<Dim>::fill(const RigidContacts<Dim>& contacts, const ContactBatch& listed, int begin,
+                               int idle, Batch<AnyEight>& batch) const {
   batch = {};
   for (int c = listed.begin; c < listed.end;) {
     AnyEight next{};
@@ -49,7 +49,7 @@ void NarrowSweepsOf<Dim>::fill(const RigidContacts<Dim>& contacts, const Contact
 template <int Dim>
 template <class AnyEight>
 void NarrowSweepsOf<Dim>::load(const RigidContacts<Dim>& contacts, std::span<const double> offset,
-                        const ContactBlock& listed, Batch<AnyEight>& batch) {
+                               const ContactBlock& listed, Batch<AnyEight>& batch) {
   for (std::size_t k = 0; k < batch.eights.size(); ++k) {
     AnyEight& next = batch.eights[k];
     const int c = listed.begin() + batch.places[k].begin, count = batch.places[k].count;
@@ -95,7 +95,7 @@ void NarrowSweepsOf<Dim>::load_tangents([[maybe_unused]] FrictionalEight& c) {
 
 template <int Dim>
 void NarrowSweepsOf<Dim>::take_contacts(const RigidContacts<Dim>& contacts, const ContactBlock& listed,
-                                 std::span<const double> offset) {
+                                        std::span<const double> offset) {
   Block& block = blocks_[listed.list];
   const int begin = listed.begin(), idle = bodies_ + listed.list;
   if (block.made != listed.made) {

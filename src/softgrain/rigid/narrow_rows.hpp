@@ -66,8 +66,8 @@ template <class Row>
 [[gnu::always_inline]] inline void scatter_columns(const Vec<2, Narrow::Floats>& columns, NarrowRow<2>* rows,
                                                    const int* index) {
   const auto store = [&](int lane, double pair) { std::memcpy(&rows[index[lane]], &pair, sizeof pair); };
-  const auto rows0145 = reinterpret_cast<FloatPairs>(
-      __builtin_shufflevector(columns[0], columns[1], 0, 8, 1, 9, 4, 12, 5, 13));
+  const auto rows0145 =
+      reinterpret_cast<FloatPairs>(__builtin_shufflevector(columns[0], columns[1], 0, 8, 1, 9, 4, 12, 5, 13));
   const auto rows2367 = reinterpret_cast<FloatPairs>(
       __builtin_shufflevector(columns[0], columns[1], 2, 10, 3, 11, 6, 14, 7, 15));
   store(0, rows0145[0]), store(1, rows0145[1]), store(2, rows2367[0]), store(3, rows2367[1]);

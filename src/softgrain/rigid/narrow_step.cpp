@@ -6,13 +6,13 @@
 namespace softgrain {
 namespace {
 
-/// Disks (spheres) in grains as a BlockSystem: `narrow` with the contacts that it leaves out, which take their turns
-/// alone after the others between grains.
+/// Disks (spheres) in grains as a BlockSystem: `narrow` with the contacts that it leaves out, which take
+/// their turns alone after the others between grains.
 template <int Dim>
 class GrainBlocks {
  public:
-  GrainBlocks(NarrowSweepsOf<Dim>& narrow, typename NarrowSweepsOf<Dim>::System& system, PushedBodies& pressed,
-              RigidContacts<Dim>& contacts, double relaxation)
+  GrainBlocks(NarrowSweepsOf<Dim>& narrow, typename NarrowSweepsOf<Dim>::System& system,
+              PushedBodies& pressed, RigidContacts<Dim>& contacts, double relaxation)
       : narrow_(narrow), system_(system), pressed_(pressed), contacts_(contacts), relaxation_(relaxation) {
     for (const Pushing& of : pressed.contacts) alone_.push_back(of.contact);
     for (int c = contacts.first_crossing(); c < contacts.size(); ++c) alone_.push_back(c);

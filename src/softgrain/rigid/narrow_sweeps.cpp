@@ -122,7 +122,7 @@ void NarrowSweepsOf<Dim>::pass_touched(const Block& block, Message& message) {
 
 template <int Dim>
 void NarrowSweepsOf<Dim>::sweep_blocks(std::span<const int> open, std::span<Violation> found, double ahead,
-                                bool measured) {
+                                       bool measured) {
   shared_for(
       shares_, static_cast<int>(open.size()), [&](int k) { return listed_[open[k]]; },
       [&](int k) { found[open[k]] = sweep_block(open[k], ahead, measured); },

@@ -15,9 +15,9 @@
 namespace softgrain {
 
 /// NLGS over disks (spheres) in single precision, eight contacts at once: the law of
-/// RigidContactSystem::sweep, block by block (docs/decisions/0022). Positions, gaps and the velocities that a step leaves stay in
-/// double: they follow from the impulses found here, which act on both bodies alike. Same bits on any number
-/// of threads.
+/// RigidContactSystem::sweep, block by block (docs/decisions/0022). Positions, gaps and the velocities that a
+/// step leaves stay in double: they follow from the impulses found here, which act on both bodies alike. Same
+/// bits on any number of threads.
 template <int Dim>
 class NarrowSweepsOf {
  public:
@@ -109,7 +109,8 @@ class NarrowSweepsOf {
   };
   struct Bodies;
 
-  void take_bodies(const RigidParticles<Dim>& particles, const RigidContacts<Dim>& contacts, double relaxation);
+  void take_bodies(const RigidParticles<Dim>& particles, const RigidContacts<Dim>& contacts,
+                   double relaxation);
   void take_contacts(const RigidContacts<Dim>& contacts, const ContactBlock& listed,
                      std::span<const double> offset);
   template <class AnyEight>

@@ -48,8 +48,7 @@ Vec<Dim> NarrowSweepsOf<Dim>::System::relative_velocity(int contact) const {
                          contacts_.image_velocity(contact);
   const Vec<Dim>& n = contacts_.normal[contact];
   constexpr int spins = spin_size<Dim>;
-  const auto turned =
-      along_tangents(n, to_vec<spins>(sweeps_.spin_[a]) + to_vec<spins>(sweeps_.spin_[b]));
+  const auto turned = along_tangents(n, to_vec<spins>(sweeps_.spin_[a]) + to_vec<spins>(sweeps_.spin_[b]));
   Vec<Dim> u{dot(n, along) + offset_[contact]};
   const auto t = tangents(n);
   for (int k = 1; k < Dim; ++k) u[k] = dot(t[static_cast<std::size_t>(k - 1)], along) - turned[k - 1];

@@ -11,29 +11,33 @@ using namespace softgrain;
 namespace {
 
 /// Two grains of random primaries, interlaced so that most near neighbours are strangers.
-RigidParticles<2> two_grains() {
-  auto bodies = test::random_bodies<2>(9, 41);
-  for (Vec<2>& x : bodies.position) x *= 1.1;  // overlaps stay below 5 %
+template <int Dim>
+RigidParticles<Dim> two_grains() {
+  auto bodies = test::random_bodies<Dim>(Dim == 2 ? 9 : 5, 41);
+  for (Vec<Dim>& x : bodies.position) x *= 1.1;  // overlaps stay below 5 %
   const auto places = bodies.position;
-  for (int i = 0; i < bodies.size(); ++i) {
-    bodies.position[i] = places[32 * i % 81];  // 32 and 81 have no common factor: every place once
-    bodies.grain[i] = i < 54 ? 0 : 1;
+  const int n = bodies.size();
+  for (int i = 0; i < n; ++i) {
+    bodies.position[i] = places[32 * i % n];  // 32 has no factor in common with 81 or 125: every place once
+    bodies.grain[i] = i < 2 * n / 3 ? 0 : 1;
   }
   return bodies;
 }
 
-NeighbourReference<2> reference_of(const RigidParticles<2>& bodies) {
-  NeighbourReference<2> reference{.skin = 0.3, .position = {}, .wall_point = {}};
+template <int Dim>
+NeighbourReference<Dim> reference_of(const RigidParticles<Dim>& bodies) {
+  NeighbourReference<Dim> reference{.skin = 0.3, .position = {}, .wall_point = {}};
   set_reference(reference, bodies);
   return reference;
 }
 
 /// The paper's Eq. (1) over all pairs of a grain closer than 2 a0; F0 under overlap.
-std::vector<Vec<2>> brute_force(const RigidParticles<2>& bodies, double F0, double gamma) {
-  std::vector<Vec<2>> force(bodies.size());
+template <int Dim>
+std::vector<Vec<Dim>> brute_force(const RigidParticles<Dim>& bodies, double F0, double gamma) {
+  std::vector<Vec<Dim>> force(bodies.size());
   for (int i = 0; i < bodies.size(); ++i) {
     for (int j = 0; j < bodies.size(); ++j) {
-      const Vec<2> d = bodies.position[j] - bodies.position[i];
+      const Vec<Dim> d = bodies.position[j] - bodies.position[i];
       const double r = norm(d), a0 = bodies.radius[i] + bodies.radius[j], gap = std::fmax(r - a0, 0);
       if (i == j || bodies.grain[i] != bodies.grain[j] || r > 2 * a0) continue;
       force[i] += (F0 * std::pow(1 + gap / a0, -gamma) / r) * d;
@@ -44,36 +48,41 @@ std::vector<Vec<2>> brute_force(const RigidParticles<2>& bodies, double F0, doub
 
 }  // namespace
 
-TEST_CASE("attraction acts between all near pairs of one grain, never between grains") {
-  auto bodies = two_grains();
+TEST_CASE_TEMPLATE("attraction acts between all near pairs of one grain, never between grains", Dimension,
+                   test::Plane, test::Space) {
+  constexpr int Dim = Dimension::value;
+  auto bodies = two_grains<Dim>();
   const auto reference = reference_of(bodies);
   drift(bodies, 0.1);  // less than half the skin
+  const Vec<Dim> start{1, 2};
   for (const double gamma : {7.0, 3.0}) {
-    AttractionForces attraction({.F0 = 5, .gamma = gamma});
+    AttractionForcesOf<Dim> attraction({.F0 = 5, .gamma = gamma});
     attraction.update(bodies, reference);
-    std::vector<Vec<2>> force(bodies.size(), Vec<2>{1, 2});
+    std::vector<Vec<Dim>> force(bodies.size(), start);
     attraction.add_forces(bodies, force);
     const auto expected = brute_force(bodies, 5, gamma);
-    Vec<2> sum;
+    Vec<Dim> sum;
     for (int i = 0; i < bodies.size(); ++i) {
-      CHECK(norm(force[i] - Vec<2>{1, 2} - expected[i]) < 1e-6);  // the lanes are 1e-7 off at deep overlap
-      sum += force[i] - Vec<2>{1, 2};
+      CHECK(norm(force[i] - start - expected[i]) < 1e-6);  // the lanes are 1e-7 off at deep overlap
+      sum += force[i] - start;
     }
     CHECK(norm(sum) < 1e-12);
   }
 }
 
-TEST_CASE("the energy is that of all near pairs, and its slope is minus the force") {
-  auto bodies = two_grains();
-  for (Vec<2>& x : bodies.position) x *= 1.1;  // now without overlap
+TEST_CASE_TEMPLATE("the energy is that of all near pairs, and its slope is minus the force", Dimension,
+                   test::Plane, test::Space) {
+  constexpr int Dim = Dimension::value;
+  auto bodies = two_grains<Dim>();
+  for (Vec<Dim>& x : bodies.position) x *= 1.1;  // now without overlap
   const auto reference = reference_of(bodies);
-  AttractionForces attraction({.F0 = 5, .gamma = 7});
+  AttractionForcesOf<Dim> attraction({.F0 = 5, .gamma = 7});
   attraction.update(bodies, reference);
-  std::vector<Vec<2>> force(bodies.size());
+  std::vector<Vec<Dim>> force(bodies.size());
   attraction.add_forces(bodies, force);
   const double step = 1e-5;
   for (const int i : {0, 17, 40, 80}) {
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < Dim; ++k) {
       const double x = bodies.position[i][k];
       bodies.position[i][k] = x + step;
       const double above = attraction.energy(bodies);
@@ -86,7 +95,7 @@ TEST_CASE("the energy is that of all near pairs, and its slope is minus the forc
 }
 
 TEST_CASE("the list is made again only when the reference moves on") {
-  auto bodies = two_grains();
+  auto bodies = two_grains<2>();
   auto reference = reference_of(bodies);
   AttractionForces attraction({.F0 = 5, .gamma = 7});
   const auto count = [&] {

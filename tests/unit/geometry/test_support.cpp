@@ -77,3 +77,13 @@ TEST_CASE("the mean support is the perimeter of the hull over 2 pi") {
   const OutlineShape shape = outline_shape<2>(x, std::vector<double>(x.size(), R), {0.1, 0.2}, 100000);
   CHECK(shape.mean_radius == doctest::Approx(hull_perimeter(x) / (2 * pi) + R).epsilon(1e-8));
 }
+
+TEST_CASE("two spheres have the half mean width R + d/4 and a roundness of d/2 over it") {
+  constexpr double R = 1, d = 3;
+  const std::vector<Vec<3>> x{{0, 0, 0}, {2, -1, 2}};
+  const std::vector<double> radius{R, R};
+  const OutlineShape shape = outline_shape<3>(x, radius, {1, -0.5, 1}, 20000);
+  CHECK(std::abs(shape.mean_radius / (R + d / 4) - 1) < 1e-4);
+  CHECK(std::abs(shape.roundness / (d / 2 / (R + d / 4)) - 1) < 1e-3);
+  CHECK(std::abs(support<3>(x, radius, {0, 0, 1}) - 3) < 1e-15);
+}

@@ -96,8 +96,7 @@ TEST_CASE("the attraction is minus the slope of its potential") {
 
 TEST_CASE("a law that cannot hold a grain is refused") {
   CHECK_NOTHROW(require_valid({.F0 = 1e-3, .gamma = 0.5}));
-  CHECK_THROWS_WITH_AS(require_valid({.F0 = 0, .gamma = 7}), "attraction F0 must be > 0, got 0",
-                       UsageError);
+  CHECK_THROWS_WITH_AS(require_valid({.F0 = 0, .gamma = 7}), "attraction F0 must be > 0, got 0", UsageError);
   CHECK_THROWS_AS(require_valid({.F0 = std::numeric_limits<double>::infinity(), .gamma = 7}), UsageError);
   CHECK_THROWS_WITH_AS(require_valid({.F0 = 1, .gamma = -2}), "attraction exponent must be > 0, got -2",
                        UsageError);

@@ -85,3 +85,12 @@ TEST_CASE("a gas has the pressure of its motion, and a stream as a whole has non
   CHECK(sigma(1, 1) == 2 * 2 * 1.0 / 4);
   CHECK(sigma(0, 1) == 0);
 }
+
+TEST_CASE("two spheres pressed together have the pressure f R / 3 V each") {
+  constexpr double f = 6, R = 2, V = 5;
+  const std::vector<BranchForceOf<3>> forces{
+      {.a = 0, .b = 1, .force = {0, 0, f}, .branch_a = {0, 0, R}, .branch_b = {0, 0, -R}}};
+  const auto pressure = virial_pressure(forces, std::vector<double>{V, 2 * V});
+  CHECK(pressure[0] == f * R / (3 * V));
+  CHECK(pressure[1] == f * R / (6 * V));
+}

@@ -16,15 +16,17 @@ constexpr double rounding = 3e-6;  // of some sweeps over numbers of about 1 in 
 
 double frictionless(int, int) { return 0; }
 
-NarrowSweeps started(const test::ContactScene<2>& scene, double relaxation) {
-  NarrowSweeps narrow;
+template <int Dim>
+NarrowSweepsOf<Dim> started(const test::ContactScene<Dim>& scene, double relaxation) {
+  NarrowSweepsOf<Dim> narrow;
   narrow.start(
       scene.bodies, scene.contacts, [](int, int) {}, scene.offset, relaxation);
   return narrow;
 }
 
-double largest_difference(const NarrowSweeps& narrow, const test::ContactScene<2>& scene) {
-  std::vector<Vec<2>> impulse(scene.contacts.size());
+template <int Dim>
+double largest_difference(const NarrowSweepsOf<Dim>& narrow, const test::ContactScene<Dim>& scene) {
+  std::vector<Vec<Dim>> impulse(scene.contacts.size());
   for (const ContactBlock& block : scene.contacts.blocks) narrow.read_impulses(block, impulse);
   double largest = 0;
   for (int c = 0; c < scene.contacts.size(); ++c)
@@ -32,13 +34,19 @@ double largest_difference(const NarrowSweeps& narrow, const test::ContactScene<2
   return largest;
 }
 
+/// Bodies along a side of a scene.
+template <int Dim>
+constexpr int side = Dim == 2 ? 9 : 5;
+
 }  // namespace
 
-TEST_CASE("sweeps in single precision find the impulses and violations of the plain sweep") {
+TEST_CASE_TEMPLATE("sweeps in single precision find the impulses and violations of the plain sweep",
+                   Dimension, test::Plane, test::Space) {
+  constexpr int Dim = Dimension::value;
   for (const FrictionRule& friction : {FrictionRule(frictionless), FrictionRule(test::mixed_friction)}) {
     for (const double relaxation : {1.0, 1.3}) {
-      test::ContactScene<2> plain(9, friction);
-      NarrowSweeps narrow = started(plain, relaxation);
+      test::ContactScene<Dim> plain(side<Dim>, friction);
+      NarrowSweepsOf<Dim> narrow = started(plain, relaxation);
       auto system = plain.system();
       for (int sweep = 0; sweep < 5; ++sweep) {
         const Violation by_narrow = narrow.sweep(true);
@@ -53,25 +61,33 @@ TEST_CASE("sweeps in single precision find the impulses and violations of the pl
   }
 }
 
-TEST_CASE("sweeps in single precision go on from the impulses of the step before") {
-  test::ContactScene<2> plain(9);
+TEST_CASE_TEMPLATE("sweeps in single precision go on from the impulses of the step before", Dimension,
+                   test::Plane, test::Space) {
+  constexpr int Dim = Dimension::value;
+  test::ContactScene<Dim> plain(side<Dim>);
   auto system = plain.system();
   test::RandomNumbers random(3);
-  for (Vec<2>& p : plain.contacts.impulse) p[0] = random.uniform(0, 0.1), p[1] = 0.2 * p[0];
+  for (Vec<Dim>& p : plain.contacts.impulse) {
+    p[0] = random.uniform(0, 0.1);
+    for (int k = 1; k < Dim; ++k) p[k] = 0.2 * p[0];
+  }
   for (const ContactBlock& block : plain.contacts.blocks)
-    for (int c = block.frictionless.begin; c < block.frictionless.end; ++c) plain.contacts.impulse[c][1] = 0;
-  NarrowSweeps narrow = started(plain, 1);
+    for (int c = block.frictionless.begin; c < block.frictionless.end; ++c)
+      plain.contacts.impulse[c] = Vec<Dim>{plain.contacts.impulse[c][0]};
+  NarrowSweepsOf<Dim> narrow = started(plain, 1);
   system.apply_impulses(plain.contacts.impulse);
   const Violation violation = narrow.sweep(true);
   CHECK(violation.contacts == system.sweep(plain.contacts.impulse, plain.contacts.friction, {}).contacts);
   CHECK(largest_difference(narrow, plain) < rounding);
 }
 
-TEST_CASE("sweeps in single precision follow lists that were made again, and another relaxation") {
-  test::ContactScene<2> first(9), second(9, frictionless);
+TEST_CASE_TEMPLATE("sweeps in single precision follow lists that were made again, and another relaxation",
+                   Dimension, test::Plane, test::Space) {
+  constexpr int Dim = Dimension::value;
+  test::ContactScene<Dim> first(side<Dim>), second(side<Dim>, frictionless);
   for (ContactBlock& block : second.contacts.blocks) block.made = 7;
-  NarrowSweeps narrow = started(first, 1);
-  const auto run = [&](test::ContactScene<2>& scene, double relaxation) {
+  NarrowSweepsOf<Dim> narrow = started(first, 1);
+  const auto run = [&](test::ContactScene<Dim>& scene, double relaxation) {
     narrow.start(
         scene.bodies, scene.contacts, [](int, int) {}, scene.offset, relaxation);
     auto system = scene.system();

@@ -43,12 +43,12 @@ inline constexpr Scope bpm_in_a_box{"on bpm in a box",
                                     [](const Case& c) { return is_bpm(c) && is_in_a_box(c); }};
 inline constexpr Scope bpm_between_walls{"on bpm between walls",
                                          [](const Case& c) { return is_bpm(c) && !is_in_a_box(c); }};
-inline constexpr Scope bpm_between_walls_in_plane{
-    "on bpm between walls in the plane",
-    [](const Case& c) { return bpm_between_walls.covers(c) && !is_in_space(c); }};
-inline constexpr Scope bpm_between_walls_in_space{
-    "on bpm between walls in space",
-    [](const Case& c) { return bpm_between_walls.covers(c) && is_in_space(c); }};
+inline constexpr Scope bpm_between_walls_in_plane{"on bpm between walls in the plane", [](const Case& c) {
+                                                    return bpm_between_walls.covers(c) && !is_in_space(c);
+                                                  }};
+inline constexpr Scope bpm_between_walls_in_space{"on bpm between walls in space", [](const Case& c) {
+                                                    return bpm_between_walls.covers(c) && is_in_space(c);
+                                                  }};
 inline constexpr Scope total_lagrangian{"on total_lagrangian mpm", is_total_lagrangian};
 inline constexpr Scope updated_lagrangian{"on updated_lagrangian mpm", is_updated_lagrangian};
 inline constexpr Scope implicit{

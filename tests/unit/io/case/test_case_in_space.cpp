@@ -34,7 +34,6 @@ TEST_CASE("in space a case has explicit steps and six cells where it leaves them
 
 TEST_CASE("what is not there yet in space is refused, with the line and a remedy") {
   const std::vector<std::pair<std::string, std::string>> later{
-      {"experiment.model=bpm", "write experiment.model = \"mpm\" or \"rigid\""},
       {"mpm.integrator=implicit", "ten times"},
       {"experiment.loading=biaxial", "write \"triaxial\""},
       {"contact.wall_surface_energy=0.1", "adhesion"},
@@ -55,6 +54,19 @@ TEST_CASE("what is not there yet in space is refused, with the line and a remedy
   CHECK(mentions(refusal(spheres, {"experiment.model=rigid", "grain.shape=polygon"}),
                  "not yet with experiment.dimension = 3: grains other than spheres"));
   CHECK(mentions(refusal("[experiment]\ndimension = 4\n"), "dimension"));
+}
+
+TEST_CASE(
+    "bonded spheres attract each other with a force in newtons, and take no word of elastic ones amiss") {
+  const std::vector<std::string> diametral{"experiment.model=bpm", "experiment.loading=diametral",
+                                           "bpm.force=0.3 N", "mpm.integrator=implicit", "mpm.cells=40"};
+  const Case c = parse_case("[experiment]\ndimension = 3\n", "case.toml", diametral);
+  CHECK(is_bonded(c));
+  CHECK(c.bpm.force == 0.3);
+  CHECK(mentions(refusal("[experiment]\ndimension = 3\n", {"bpm.force=3 N/m"}), "force"));
+  CHECK(mentions(refusal(spheres, {"experiment.model=bpm", "experiment.loading=biaxial",
+                                   "loading.confining_stress=1e5"}),
+                 "write \"triaxial\""));
 }
 
 TEST_CASE("spheres in space may be rigid, all of them or a kind") {
