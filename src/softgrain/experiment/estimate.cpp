@@ -225,7 +225,8 @@ Estimate estimate(const Case& the_case) {
   Estimate result;
   result.particles = bpm ? primaries(the_case) : points(the_case);
   const double contacts_of_primary = is_in_space(the_case) ? 4.2 : 2.2;
-  result.contacts = bpm ? contacts_of_primary * result.particles : grains(the_case) * 3.3 * the_case.mpm.cells;
+  result.contacts =
+      bpm ? contacts_of_primary * result.particles : grains(the_case) * 3.3 * the_case.mpm.cells;
   result.steps = std::round(loading_time(the_case) / first_time_step(the_case));
   result.memory = memory(the_case, result);
   result.hours =

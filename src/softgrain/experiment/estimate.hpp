@@ -8,9 +8,9 @@ namespace softgrain {
 /// What a run will take, before it runs; a guide, good to a factor of about two.
 struct Estimate {
   double particles = 0;  ///< bpm: primary particles; else points_of_grain of all
-  double contacts =
-      0;  ///< bpm: 2.2 per primary, 4.2 in space, a dense packing has about 2 and 3; mpm: half of the outlines' vertices
-  double steps = 0;  ///< of the loading path; preparing the sample comes on top
+  double contacts = 0;   ///< bpm: 2.2 per primary, 4.2 in space, a dense packing has about 2 and 3; mpm: half
+                         ///< of the outlines' vertices
+  double steps = 0;      ///< of the loading path; preparing the sample comes on top
   double memory =
       0;             ///< [bytes] as measured: bpm 2.3 kB per primary and 7 kB per grain; mpm 0.9 kB per point
   double disk = 0;   ///< [bytes] snapshots and ParaView's files

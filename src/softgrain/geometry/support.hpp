@@ -19,7 +19,7 @@ Vec<Dim> even_direction(int k, int count);
 struct OutlineShape {
   double mean_radius = 0;  ///< mean of h [m] = perimeter of the hull / 2 pi (Cauchy), in space half its mean
                            ///< width: the radius R of a round grain
-  double roundness = 0;  ///< (h_max - h_min) / mean h [-], 0 for a circle
+  double roundness = 0;    ///< (h_max - h_min) / mean h [-], 0 for a circle
 };
 
 /// Over `directions` equally spaced directions.
