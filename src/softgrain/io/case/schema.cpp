@@ -78,14 +78,12 @@ std::vector<Key> all_keys() {
       KEY(bpm.size_ratio, "", from_to(1, largest_size_ratio), "largest over smallest primary diameter", with_bpm),
       KEY(bpm.attraction, "N/m", positive(),
           "attraction F0 between touching primaries of the grain, per metre of depth (diametral)", bpm_between_walls_in_plane),
-      KEY(bpm.force, "N", positive(),
-          "the same attraction F0 in space (diametral)", bpm_between_walls_in_space),
+      KEY(bpm.force, "N", positive(), "the same attraction F0 in space (diametral)", bpm_between_walls_in_space),
       KEY(bpm.cohesive_pressure, "MPa", positive(),
           "internal cohesive pressure sigma_I = F0/<a0>, in space F0/<a0>^2, the same in all grains: F0 follows the size of their "
           "primaries (in a box)", bpm_in_a_box),
       KEY(bpm.exponent, "", at_least(1),
           "exponent gamma of F0 (a0/r)^gamma, r the distance of the centres, a0 the sum of the radii", with_bpm),
-
       KEY(bpm.inner_friction, "", at_least(0), "coefficient of friction mu between the primaries of a grain", with_bpm),
       KEY(bpm.equal, "", its_words(),
           "what all grains share: the number of primaries, or, to about 5 %, their size (in a box)", bpm_in_a_box),
