@@ -5,6 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from . import solids
+
 GAUSS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)]), np.array([5.0, 8.0, 5.0]) / 18
 
 
@@ -89,8 +91,9 @@ def _gauss_points(snapshot):
 def _on_gauss_points(snapshot):
     """Places from the grains' centres, x . n times the share, grains, how many, and their fullness."""
     points, share = _gauss_points(snapshot)
-    grains = len(snapshot.particles["position"])
-    x = points.place - snapshot.particles["position"][points.grain]
+    centre = solids.centres(snapshot)
+    grains = len(centre)
+    x = points.place - centre[points.grain]
     fullness = np.array([fullness_of(count) for count in np.bincount(snapshot.surface["grain"].astype(int).ravel(), minlength=grains)])
     return x, share * np.einsum("pk,pk->p", x, points.normal), points.grain, grains, fullness
 

@@ -13,6 +13,14 @@ def of_grains(snapshot) -> bool:
     return in_space(snapshot) and len(np.unique(snapshot.particles["grain"])) == len(snapshot.particles["position"])
 
 
+def centres(snapshot):
+    """(n, 3) [m]: of the grains; of bonded ones the centres of their primaries' volume."""
+    if of_grains(snapshot):
+        return snapshot.particles["position"]
+    grain, size = snapshot.particles["grain"].astype(int), snapshot.particles["radius"] ** 3
+    return np.stack([np.bincount(grain, size * x) for x in snapshot.particles["position"].T], axis=1) / np.bincount(grain, size)[:, None]
+
+
 def triangles(snapshot):
     """(2 quads, 3, 3) [m]: each quad as two, seen counter-clockwise from outside; and the grain of each (2 quads,)."""
     quad = snapshot.surface["quad"].astype(int)
@@ -26,8 +34,9 @@ def moments(snapshot):
     Sums over the tetrahedra between a point of the grain and its triangles a, b, c, of volume v = a . (b x c)/6:
     int x = v s/4, int x (x) x = v (a a + b b + c c + s s)/20 with s = a + b + c."""
     corners, grain = triangles(snapshot)
-    count = len(snapshot.particles["position"])
-    x = corners - snapshot.particles["position"][grain][:, None]
+    centre = centres(snapshot)
+    count = len(centre)
+    x = corners - centre[grain][:, None]
     v = np.einsum("ti,ti->t", x[:, 0], np.cross(x[:, 1], x[:, 2])) / 6
     s = x.sum(axis=1)
     second = (np.einsum("tki,tkj->tij", x, x) + np.einsum("ti,tj->tij", s, s)) * v[:, None, None] / 20
@@ -38,7 +47,7 @@ def moments(snapshot):
     volume = over_grains(v)[:, 0]
     mean = over_grains(v[:, None] * s / 4) / volume[:, None]
     tensor = over_grains(second).reshape(-1, 3, 3) / volume[:, None, None] - np.einsum("gi,gj->gij", mean, mean)
-    return volume, snapshot.particles["position"] + mean, tensor
+    return volume, centre + mean, tensor
 
 
 def ellipsoids(snapshot):
@@ -83,5 +92,5 @@ def pressures(snapshot):
     """(n,) [Pa]: of each grain the mean over its surface of the pressure behind it."""
     corners, grain = triangles(snapshot)
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    count = len(snapshot.particles["position"])
+    count = len(centres(snapshot))
     return np.bincount(grain, area * np.tile(snapshot.surface["pressure"], 2), count) / np.bincount(grain, area, count)

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "softgrain/geometry/cell_grid.hpp"
-#include "softgrain/math/lanes.hpp"
+#include "softgrain/math/lane_rows.hpp"
 
 namespace softgrain {
 namespace {

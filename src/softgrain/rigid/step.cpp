@@ -59,7 +59,7 @@ void RigidDynamics<Dim>::rebuild_contacts() {
 template <int Dim>
 void RigidDynamics<Dim>::share_grains() {
   reference.shared =
-      Dim == 2 && options.precision == Precision::single && options.law.activation == Activation::anticipated;
+      options.precision == Precision::single && options.law.activation == Activation::anticipated;
 }
 
 template <int Dim>
