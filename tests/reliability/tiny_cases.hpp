@@ -57,6 +57,10 @@ inline Words tiny_path(const std::string& name) {
     add({"bpm.primaries=25", "bpm.inner_friction=0.3", "contact.friction=0",
          "loading.wall_velocity=\"5 m/s\"", "loading.max_strain=0.1", "loading.unload_at=[0.06]",
          "loading.unload_by=0.03"});
+  if (name == "bonded_spheres")
+    add({"bpm.primaries=25", "bpm.library=1", "sample.packing_fraction=0.35",
+         "loading.wall_velocity=\"10 m/s\"", "loading.max_strain=0.25", "loading.unload_at=[0.22]",
+         "loading.unload_by=0.05"});
   if (name == "shear")
     add({"sample.grains=9", "loading.wall_velocity=\"0.5 m/s\"", "loading.hold=\"20 ms\"",
          "loading.shear_rate=10", "loading.max_shear=0.55", "loading.confining_stress=\"1 MPa\"",
@@ -106,7 +110,7 @@ inline std::vector<TinyCase> tiny_cases() {
     else if (name == "die" || name == "tablet")
       cases.push_back({name, source, tiny_path(name), 5});
     else if (name == "rubber_sand" || name == "soft_rigid" || name == "compaction_3d" ||
-             name == "sphere_walls" || name == "bonded_sphere")
+             name == "sphere_walls" || name == "bonded_sphere" || name == "bonded_spheres")
       cases.push_back({name, source, tiny_path(name)});
     else if (name == "one_grain_box" || name == "diametral_plastic")
       cases.push_back({name, source, tiny_path(name), 3});
