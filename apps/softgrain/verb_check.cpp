@@ -124,13 +124,16 @@ void print_advice_on_adhesion(const Case& the_case) {
 /// Of Advice::blow, for grains that are pressed.
 constexpr double most_of_a_blow = 0.1;
 
+/// Of Advice::imbalance, for what springs back to be right.
+constexpr double most_of_an_imbalance = 0.03;
+
 /// "below 1e-3, quasi-static".
 std::string_view word_for(double inertial_number) {
   if (inertial_number < 1.0001e-3) return "below 1e-3: quasi-static";
   return inertial_number < 1e-1 ? "above 1e-3: inertia tells" : "above 0.1: a blow";
 }
 
-void print_advice(const Advice& advice) {
+void print_advice(const Advice& advice, double newton_tolerance) {
   const auto text = [](double value, const char* unit) { return short_value({"", unit, value}); };
   fmt::print(stderr, "time step {}", text(advice.time_step, "s"));
   if (std::isfinite(advice.longest_step))
@@ -142,6 +145,11 @@ void print_advice(const Advice& advice) {
                "warning: walls at this speed strike with rho c v = {:.2g} times the yield stress, and points "
                "may turn inside out: lower loading.wall_velocity to below {:.1g} of what it is\n",
                advice.blow, most_of_a_blow / advice.blow);
+  if (advice.imbalance > most_of_an_imbalance)
+    fmt::print(stderr,
+               "warning: mpm.tolerance leaves stresses of about {:.2g} times the yield stress unbalanced, and "
+               "what springs back may be wrong: lower it to {:.0e}\n",
+               advice.imbalance, newton_tolerance * most_of_an_imbalance / advice.imbalance / 3);
   if (advice.time_step > advice.longest_step)
     fmt::print(stderr,
                "warning: the time step is {:.2g} times the longest stable one, {}: take that, or less\n",
@@ -159,7 +167,7 @@ void check(const CheckOptions& options) {
   std::fflush(stdout);
   print_estimate(the_case, cost);
   if (options.ranks > 1) print_estimate_on_ranks(the_case, cost, options.ranks);
-  print_advice(advice);
+  print_advice(advice, the_case.mpm.tolerance);
   print_advice_on_adhesion(the_case);
   for (const std::string& note : notes_of(reading)) fmt::print(stderr, "{}\n", note);
 }

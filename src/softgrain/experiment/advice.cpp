@@ -57,6 +57,12 @@ double blow_of(const Case& c) {
   return c.grain.density * c_wave * c.loading.wall_velocity / c.mpm.material.yield_stress;
 }
 
+double imbalance_of(const Case& c) {
+  if (!c.kinds.empty()) return largest_of_kinds(c, imbalance_of);
+  if (!flows(c) || c.mpm.integrator != Integrator::backward_euler) return 0;
+  return c.mpm.tolerance * c.mpm.material.young_modulus / c.mpm.material.yield_stress;
+}
+
 double diameter_of(const Case& c) {
   if (!is_in_a_box(c)) return 2 * c.grain.radius;
   return sum_of_kinds(
@@ -108,6 +114,7 @@ Advice advise(const Case& c) {
     advice.inertial_number = rate * inertial_time(c);
   }
   advice.blow = blow_of(c);
+  advice.imbalance = imbalance_of(c);
   return advice;
 }
 

@@ -20,6 +20,9 @@ struct Advice {
   /// rho c v over the yield stress, v the speed of the walls, of grains that flow: the stress of a blow with
   /// that speed. Below 0.1 the grains are pressed, from 1 on they are struck. 0 where nothing yields.
   double blow = 0;
+  /// mpm.tolerance times E over the yield stress, of grains that flow in implicit steps: how far from balance
+  /// Newton's method may leave them, by its last correction over R. 0 where nothing yields.
+  double imbalance = 0;
 };
 
 /// Rate of strain [1/s] at which the inertial number is loading.inertial_number, at the stress of Advice:
