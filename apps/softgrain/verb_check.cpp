@@ -146,10 +146,11 @@ void print_advice(const Advice& advice, double newton_tolerance) {
                "may turn inside out: lower loading.wall_velocity to below {:.1g} of what it is\n",
                advice.blow, most_of_a_blow / advice.blow);
   if (advice.imbalance > most_of_an_imbalance)
-    fmt::print(stderr,
-               "warning: mpm.tolerance leaves stresses of about {:.2g} times the yield stress unbalanced, and "
-               "what springs back may be wrong: lower it to {:.0e}\n",
-               advice.imbalance, newton_tolerance * most_of_an_imbalance / advice.imbalance / 3);
+    fmt::print(
+        stderr,
+        "warning: mpm.tolerance leaves stresses of about {:.2g} times the yield stress unbalanced, and "
+        "what springs back may be wrong: lower it to {:.0e}\n",
+        advice.imbalance, newton_tolerance * most_of_an_imbalance / advice.imbalance / 3);
   if (advice.time_step > advice.longest_step)
     fmt::print(stderr,
                "warning: the time step is {:.2g} times the longest stable one, {}: take that, or less\n",

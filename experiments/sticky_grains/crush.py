@@ -74,13 +74,13 @@ def draw(crush_path, pull_path):
     way = series["wall_height"][0] - series["wall_height"]
     way = way - (series["wall_height"][0] - height)  # since the walls touch
     peak = int(np.argmax(np.where(way < 0.2 * height, tensile, 0)))
-    pulled = -np.min(pull.series["stress_yy"] * -1 if "stress_yy" in pull.series.dtype.names else 0)
     pulled = -np.min((pull.series["stress_top"] + pull.series["stress_bottom"]) / 2)
     rows = [("grains", int(crush[0].particles["grain"].max()) + 1), ("width of the disk [mm]", 1e3 * width),
             ("height of the disk [mm]", 1e3 * height), ("largest force P before 0.2 D [N/m]", force[peak]),
             ("at travel over D", way[peak] / height), ("2 P/(pi D) [Pa]", tensile[peak]),
             ("tensile strength by pulling [Pa]", pulled), ("ratio", tensile[peak] / pulled),
-            ("energy missing over the walls' work", np.abs(series["energy_error"]).max() / np.abs(series["wall_work"]).max())]
+            ("energy missing up to there over the walls' work", np.abs(series["energy_error"][:peak]).max() / series["wall_work"][peak]),
+            ("energy missing in all over the walls' work", np.abs(series["energy_error"]).max() / series["wall_work"].max())]
     with open(HERE / "results/crush.csv", "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerows([name, f"{value:.4g}"] for name, value in rows)
@@ -90,15 +90,17 @@ def draw(crush_path, pull_path):
     figure, axes = plt.subplots(1, 4, figsize=(7.2, 2.3), layout="constrained", width_ratios=(1.25, 1, 1, 1))
     axes[0].plot(way / height, tensile, linewidth=0.9, label=r"crush: $2P/\pi D$")
     axes[0].axhline(pulled, color="C1", linewidth=0.9, linestyle="--", label="pulling")
-    axes[0].set(xlabel="travel / D", ylabel="stress [Pa]", xlim=(-.02, None))
-    axes[0].legend(frameon=False)
-    for panel, step in zip(axes[1:], (first, first + (len(crush) - 1 - first) // 2, len(crush) - 1)):
+    axes[0].set(xlabel="travel / D", ylabel="stress [Pa]", xlim=(0, None), ylim=(0, 260))
+    axes[0].legend(frameon=False, loc="upper right")
+    travel = [np.interp(snapshot.time, series["time"], way / height) for snapshot in crush]
+    after = next(step for step, share in enumerate(travel) if share > way[peak] / height + 0.015)
+    for panel, step in zip(axes[1:], (first, after, len(crush) - 1)):
         grain = crush[step].outlines["grain"].astype(int)
         x = 1e3 * crush[step].outlines["position"]
         panel.add_collection(PolyCollection([x[grain == g] for g in range(grain.max() + 1)], facecolors="#cfd8dc",
                                             edgecolors="black", linewidths=0.5))
         panel.set(aspect="equal", xlim=(5, 25), ylim=(-1, 17), xticks=(), yticks=(),
-                  title=f"{np.interp(crush[step].time, series['time'], way / height):.2f}")
+                  title=f"{max(travel[step], 0):.2f}")
     figure.savefig(HERE / "results/crush.png", dpi=110, metadata={"Software": None})
 
 
