@@ -50,6 +50,10 @@ inline Words tiny_path(const std::string& name) {
   if (name == "compaction_3d")
     add({"sample.grains=4", "mpm.cells=2", "sample.packing_fraction=0.35", "loading.wall_velocity=\"5 m/s\"",
          "loading.max_strain=0.32", "loading.unload_at=[0.28]", "loading.unload_by=0.05"});
+  if (name == "hydrogels")
+    add({"sample.grains=4", "mpm.cells=2", "sample.packing_fraction=0.35", "sample.aspect=1",
+         "loading.wall_velocity=\"0.25 m/s\"", "loading.max_strain=0.5", "loading.unload_at=[0.45]",
+         "loading.unload_by=0.05"});
   if (name == "sphere_walls")
     add({"mpm.cells=2", "contact.wall_friction=0.2", "loading.wall_velocity=\"5 m/s\"",
          "loading.max_strain=0.1", "loading.unload_at=[0.06]", "loading.unload_by=0.03"});
@@ -110,7 +114,8 @@ inline std::vector<TinyCase> tiny_cases() {
     else if (name == "die" || name == "tablet")
       cases.push_back({name, source, tiny_path(name), 5});
     else if (name == "rubber_sand" || name == "soft_rigid" || name == "compaction_3d" ||
-             name == "sphere_walls" || name == "bonded_sphere" || name == "bonded_spheres")
+             name == "sphere_walls" || name == "bonded_sphere" || name == "bonded_spheres" ||
+             name == "hydrogels")
       cases.push_back({name, source, tiny_path(name)});
     else if (name == "one_grain_box" || name == "diametral_plastic")
       cases.push_back({name, source, tiny_path(name), 3});
