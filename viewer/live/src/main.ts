@@ -25,6 +25,7 @@ class Page {
   private link: Link;
   private picture: Picture | null = null;
   private fresh = false; // the picture was not drawn yet
+  private behind = false; // it took the place of one that was not drawn: the solver waits
   private stale = true; // what is drawn is not what is chosen
   private startHeight = 1;
   private goal = 1;
@@ -94,6 +95,9 @@ class Page {
       this.over = true;
       say(message.words + ". Start again, or choose other grains.");
     } else {
+      // One picture waits to be drawn while another may come: else each would wait for a frame and then for a step.
+      if (this.fresh) this.behind = true;
+      else this.link.say({ kind: "drawn" });
       this.picture = message.picture;
       if (message.secondsPerStep > 0) this.secondsPerStep = message.secondsPerStep;
       this.curves.add(message.picture.numbers);
@@ -122,7 +126,7 @@ class Page {
     requestAnimationFrame((next) => this.frame(next));
     this.countFrames(now);
     if (!this.picture || (!this.fresh && !this.stale)) return;
-    if (this.fresh) this.link.say({ kind: "drawn" });
+    if (this.behind) this.link.say({ kind: "drawn" });
     const { numbers } = this.picture;
     this.drawing.draw(
       this.picture,
@@ -132,7 +136,7 @@ class Page {
     );
     this.wall.place(numbers.height, this.goal, this.startHeight);
     $(".most").textContent = withUnit(this.drawing.pressure, "Pa");
-    this.fresh = this.stale = false;
+    this.fresh = this.stale = this.behind = false;
     document.body.dataset.drawn = String(numbers.step);
     if (now - this.curvesAt < CURVES_EVERY) return;
     this.curvesAt = now;

@@ -32,7 +32,7 @@ export type ToSolver =
   /** Where the top wall shall go [m above the bottom]. */
   | { kind: "drive"; height: number }
   | { kind: "pause"; paused: boolean }
-  /** The last picture was drawn; another may come. */
+  /** The last picture was drawn, or is about to be; another may come. */
   | { kind: "drawn" }
   /** So many steps at once, however long that takes, then a picture. */
   | { kind: "steps"; count: number };

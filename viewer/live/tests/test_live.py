@@ -30,6 +30,8 @@ TOLERANCE = 1e-9
 
 
 class LivePage(BrowserTest):
+    webgl = False
+
     def tearDown(self):
         super().tearDown()
         self.assertEqual(self.browser.errors, [])
