@@ -14,6 +14,8 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 ROOT = Path(__file__).resolve().parent
+MACOS = sys.platform == "darwin"
+ORIGIN = "@loader_path" if MACOS else "$ORIGIN"  # the folder of the file that loads a library
 #: Of C and C++, which others in the interpreter use too: never two of them in one process.
 SYSTEM = re.compile(r"linux-vdso|ld-linux|lib(c|m|dl|rt|pthread|stdc\+\+|gcc_s)\.so")
 
@@ -28,7 +30,9 @@ def pybind11_folder():
 
 
 def libraries_of(file):
-    """Paths of the shared libraries that a file loads, but for those of C and C++."""
+    """Paths of the shared libraries that a file loads, but for those of C and C++. On macOS delocate finds them, after us."""
+    if MACOS:
+        return []
     lines = subprocess.run(["ldd", file], capture_output=True, text=True, check=True).stdout.splitlines()
     return [Path(line.split()[2]) for line in lines if "=>" in line and not SYSTEM.search(line)]
 
@@ -39,7 +43,7 @@ class ByCMake(build_ext):
         package = Path(self.get_ext_fullpath(extension.name)).resolve().parent
         subprocess.run(["cmake", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Release",
                         "-DCMAKE_CXX_FLAGS_RELEASE=-O3 -DNDEBUG", "-DSOFTGRAIN_TESTS=OFF", "-DSOFTGRAIN_STATIC=ON",
-                        "-DCMAKE_BUILD_RPATH=$ORIGIN/lib;$ORIGIN/../lib", f"-DPython_EXECUTABLE={sys.executable}",
+                        f"-DCMAKE_BUILD_RPATH={ORIGIN}/lib;{ORIGIN}/../lib", f"-DPython_EXECUTABLE={sys.executable}",
                         "-DSOFTGRAIN_PYTHON_DIR=..", *pybind11_folder(), *shlex.split(os.environ.get("CMAKE_ARGS", ""))],
                        check=True)
         subprocess.run(["cmake", "--build", build, "--parallel", str(os.cpu_count()), "--target", "softgrain_app",
@@ -51,7 +55,7 @@ class ByCMake(build_ext):
         for copy, built in copies.items():
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(built, copy)
-            subprocess.run(["strip", "--strip-unneeded", copy], check=True)
+            subprocess.run(["strip", *(["-x"] if MACOS else ["--strip-unneeded"]), copy], check=True)
 
 
 setup(ext_modules=[Extension("softgrain._core", sources=[])], cmdclass={"build_ext": ByCMake})

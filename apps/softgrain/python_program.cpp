@@ -19,10 +19,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Empty if the system does not tell.
+/// From the system; where it does not tell, from SOFTGRAIN_PROGRAM, which the command of a wheel sets. Else
+/// empty.
 fs::path own_path() {
   std::error_code unknown;
-  return fs::read_symlink("/proc/self/exe", unknown);
+  const fs::path told = fs::read_symlink("/proc/self/exe", unknown);
+  const char* named = std::getenv("SOFTGRAIN_PROGRAM");
+  return told.empty() && named != nullptr ? fs::path(named) : told;
 }
 
 /// The Python package: installed beside this program, or in the source tree that it was built from.

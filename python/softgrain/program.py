@@ -9,4 +9,5 @@ PROGRAM = Path(__file__).parent / "bin" / "softgrain"
 
 def main():
     os.environ.setdefault("SOFTGRAIN_PYTHON", sys.executable)
+    os.environ.setdefault("SOFTGRAIN_PROGRAM", str(PROGRAM))  # a system without /proc does not tell the program where it lies
     os.execv(PROGRAM, ["softgrain", *sys.argv[1:]])
