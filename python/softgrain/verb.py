@@ -8,12 +8,6 @@ from .run import NotRecorded
 USAGE_ERROR, IO_ERROR = 2, 4
 
 
-def refuse_space(run, what):
-    """Raises ValueError for a run in three dimensions, of what knows the plane alone."""
-    if run.in_space:
-        raise ValueError(f"not yet: {what} of a run with experiment.dimension = 3; softgrain plot draws it, ParaView opens its vtk/")
-
-
 def carry_out(verb, arguments, action) -> int:
     """action(options) returns the exit code, None for 0; an error of its own is told, and becomes 2 or 4."""
     options = parse(verb, arguments)

@@ -18,7 +18,9 @@ from small_runs import CASES, small_run
 import softgrain
 from softgrain.methods import bibtex, facts_of, latex, paragraph
 from softgrain.methods.__main__ import main
-from softgrain.methods.text import LAWS, LOADINGS, quantity
+from softgrain.methods.grains import LAWS
+from softgrain.methods.quantity import quantity
+from softgrain.methods.text import LOADINGS
 
 
 def methods(*words):
@@ -88,6 +90,49 @@ class Words(unittest.TestCase):
         of_no_law = {"law", "young_modulus", "poisson_ratio", "cells", "integrator", "formulation", "shape_functions", "contact_on",
                      "damping", "tolerance", "time_step"}
         self.assertEqual({key for _, keys, _ in LAWS.values() for key in keys}, set(tables["mpm"]) - of_no_law)
+
+    def test_spheres_are_told_as_spheres(self):
+        text = text_of("bonded_spheres")
+        self.assertIn("in three dimensions, by", text)
+        self.assertRegex(text, r"4 spheres of diameters .* aggregates of 20 rigid primary spheres each \(80 in all\), .* F0/<a0>\^2 = 500 kPa")
+
+    def test_each_kind_is_told_with_its_shape_size_and_material(self):
+        with tempfile.TemporaryDirectory() as folder:
+            case = Path(folder) / "case.toml"
+            case.write_text("""
+[experiment]
+model = "mpm"
+loading = "compaction"
+[[kind]]
+name = "rubber"
+number = 3
+shape = "ellipse"
+aspect = 1.5
+cells = 4
+law.young_modulus = "2 MPa"
+diameter.smallest = "2 mm"
+diameter.largest = "2.5 mm"
+[[kind]]
+name = "sand"
+number = 2
+model = "rigid"
+shape = "polygon"
+sides = 6
+density = "2600 kg/m^3"
+[loading]
+wall_velocity = "5 m/s"
+max_strain = 0.02
+[output]
+vtk = false
+report = false
+""")
+            run = Path(folder) / "run"
+            subprocess.run([os.environ["SOFTGRAIN_PROGRAM"], "run", case, "-o", run, "-q"], check=True)
+            _, text, _ = methods(run)
+        self.assertIn("consisted of 5 grains of two kinds.", text)
+        self.assertRegex(text, r"rubber: 3 ellipses of aspect ratio 1.5 of diameters between 2 mm and 2.5 mm and a density of 990 kg/m\^3, "
+                               r"made of a compressible neo-Hookean material with E = 2 MPa, nu = 0.45\.")
+        self.assertRegex(text, r"sand: 2 rigid regular polygons of 6 sides of diameters .* a density of 2600 kg/m\^3\.")
 
     def test_a_law_is_told_with_its_own_parameters_in_their_units(self):
         run = small_run("elastic")

@@ -4,7 +4,7 @@ import sys
 
 import softgrain
 
-from ..verb import carry_out, refuse_space
+from ..verb import carry_out
 from . import bibtex, facts_of, latex, paragraph
 
 DOUBTFUL = 5  # exit code, that of the program `softgrain`
@@ -12,7 +12,6 @@ DOUBTFUL = 5  # exit code, that of the program `softgrain`
 
 def write(options):
     run = softgrain.open(options.run)
-    refuse_space(run, "softgrain methods")
     facts = facts_of(run)
     text, keys = paragraph(run, facts)
     print(latex(text) if options.format == "latex" else text, bibtex(facts, keys), sep="\n\n")

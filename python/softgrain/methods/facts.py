@@ -12,7 +12,8 @@ from .. import NotRecorded, measure
 class Facts(NamedTuple):
     """SI units; None where the run does not say."""
 
-    model: str  # "bpm" or "mpm"
+    model: str  # "bpm", "mpm" or "rigid"
+    in_space: bool
     grains: int
     particles: int  # primaries or material points, in all
     steps: int
@@ -37,7 +38,7 @@ def facts_of(run) -> Facts:
         raise NotRecorded(f"{run.path} has no snapshot, no row or no run.json: it has not begun")
     snapshot, report, program = run[0], run.info["report"], run.info["program"]
     return Facts(
-        model=run.case["experiment"]["model"], grains=_grains(snapshot), particles=len(snapshot.particles["position"]),
+        model=run.case["experiment"]["model"], in_space=run.in_space, grains=_grains(snapshot), particles=len(snapshot.particles["position"]),
         steps=report["steps"], time_step=_time_steps(run.series), strain=float(run.series["strain"].max()),
         inertial_number=_inertial_number(run), steps_converged=report["steps_converged"], residual=report["residual_max"],
         residual_limit=report["residual_limit"], overlap=report["overlap_max"],
