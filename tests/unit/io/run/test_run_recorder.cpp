@@ -144,18 +144,20 @@ TEST_CASE(
     "a snapshot is due when output.snapshot_every has passed by the clock, and a long time brings none") {
   RunRequest by_the_clock = request();
   by_the_clock.the_case.output.snapshots = 0;
-  const auto kept = [&](double seconds) {
-    const test::TemporaryDirectory directory;
+  const auto run_with = [&](const fs::path& root, double seconds, const BouncingBall& ball) {
     by_the_clock.the_case.output.snapshot_every = seconds;
-    CHECK(run_ball(directory.path(), by_the_clock).exit_code == 0);
-    const test::TemporaryDirectory whole;
-    run_ball(whole.path(), request());
-    CHECK(physics(directory.path()) == physics(whole.path()));
-    CHECK(final_hash(directory.path()) == final_hash(whole.path()));
-    return list_snapshots(RunPaths{directory.path()}).size();
+    const int exit_code = run_ball(root, by_the_clock, ball).exit_code;
+    by_the_clock.resume = true;
+    return exit_code;
   };
-  CHECK(kept(1e-9) == 401);  // after every step, and the first state
-  CHECK(kept(3600) == 2);    // the first and the last state
+  const test::TemporaryDirectory whole, parts;
+  run_ball(whole.path(), request());
+  CHECK(run_with(parts.path(), 1e-9, {.signals_at = 20, .signal = SIGTERM}) == 75);
+  CHECK(list_snapshots(RunPaths{parts.path()}).size() == 22);  // of 21 steps, and the first state
+  CHECK(run_with(parts.path(), 3600, {}) == 0);
+  CHECK(list_snapshots(RunPaths{parts.path()}).size() == 23);  // and the last
+  CHECK(physics(parts.path()) == physics(whole.path()));
+  CHECK(final_hash(parts.path()) == final_hash(whole.path()));
 }
 
 TEST_CASE("resuming skips damaged snapshots, sets them aside and still gives the same run") {
