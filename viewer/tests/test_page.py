@@ -256,6 +256,7 @@ class Page(BrowserTest):
         self.browser.run("document.querySelector('.chains input').click()")
         self.browser.run("document.querySelector('.choices .log input').click()")
         self.browser.run("document.querySelector('figcaption .log input').click()")
+        self.browser.wait("location.hash.includes('plots')")
         address = self.address()
         self.assertEqual({name: address[name] for name in ("frame", "colour", "over", "log", "chains")},
                          {"frame": "1", "colour": "J", "over": "ends", "log": "1", "chains": "0"})
