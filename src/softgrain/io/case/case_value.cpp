@@ -82,12 +82,23 @@ Integer read_integer(const Key& key, const TomlValue& value) {
   return static_cast<Integer>(*i);
 }
 
+/// A list of numbers; empty if it is none.
+std::vector<double> read_row(const Key& key, const TomlValue& value) {
+  std::vector<double> numbers;
+  if (const auto* items = std::get_if<TomlValue::Array>(&value.content))
+    for (const TomlValue& item : *items) numbers.push_back(read_number(key, item));
+  return numbers;
+}
+
+std::string shown_row(const TomlValue& value, const std::vector<double>& numbers) {
+  return std::holds_alternative<TomlValue::Array>(value.content)
+             ? fmt::format("[{}]", fmt::join(numbers, ", "))
+             : shown(value);
+}
+
 /// [x, y, radius, angle] in SI, or with the number of its kind.
 PlacedGrain read_grain(const Key& key, const TomlValue& value) {
-  const auto* items = std::get_if<TomlValue::Array>(&value.content);
-  std::vector<double> numbers;
-  if (items != nullptr)
-    for (const TomlValue& item : *items) numbers.push_back(read_number(key, item));
+  std::vector<double> numbers = read_row(key, value);
   if (numbers.size() == 4) numbers.push_back(0);
   constexpr double most_kinds = 1000;
   require(numbers.size() == 5 && numbers[2] > 0 && numbers[4] >= 0 && numbers[4] < most_kinds &&
@@ -95,7 +106,7 @@ PlacedGrain read_grain(const Key& key, const TomlValue& value) {
           "{} takes four numbers for each grain, [x, y, radius, angle] in m and rad, with radius > 0, or a "
           "fifth for "
           "its kind, from 0 on; got {}",
-          key.name, items == nullptr ? shown(value) : fmt::format("[{}]", fmt::join(numbers, ", ")));
+          key.name, shown_row(value, numbers));
   return {.centre = {numbers[0], numbers[1]},
           .radius = numbers[2],
           .angle = numbers[3],
@@ -104,14 +115,11 @@ PlacedGrain read_grain(const Key& key, const TomlValue& value) {
 
 /// [x, y], or with a 1 at a corner.
 OutlinePoint read_outline_point(const Key& key, const TomlValue& value) {
-  const auto* items = std::get_if<TomlValue::Array>(&value.content);
-  std::vector<double> numbers;
-  if (items != nullptr)
-    for (const TomlValue& item : *items) numbers.push_back(read_number(key, item));
+  std::vector<double> numbers = read_row(key, value);
   if (numbers.size() == 2) numbers.push_back(0);
   require(numbers.size() == 3 && (numbers[2] == 0 || numbers[2] == 1),
           "{} takes two numbers for each point, [x, y], and a third at a corner, 1; got {}", key.name,
-          items == nullptr ? shown(value) : fmt::format("[{}]", fmt::join(numbers, ", ")));
+          shown_row(value, numbers));
   return {{numbers[0], numbers[1]}, numbers[2] == 1};
 }
 
@@ -153,11 +161,8 @@ struct Assign {
     member(the_case) = std::move(points);
   }
   void operator()(MemberOf<std::vector<double>> member) const {
-    const auto* items = std::get_if<TomlValue::Array>(&value.content);
-    if (items == nullptr) wrong_type(key, value);
-    std::vector<double> numbers;
-    for (const TomlValue& item : *items) numbers.push_back(read_number(key, item));
-    member(the_case) = std::move(numbers);
+    if (!std::holds_alternative<TomlValue::Array>(value.content)) wrong_type(key, value);
+    member(the_case) = read_row(key, value);
   }
 };
 

@@ -1,5 +1,7 @@
 #include "softgrain/io/case/csv_cells.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace softgrain {
@@ -28,6 +30,11 @@ std::vector<CsvCell> csv_cells(std::string_view line) {
     begin = end + 1;
   }
   return cells;
+}
+
+std::string wrong_count(std::size_t cells, std::size_t columns) {
+  return fmt::format("{} values, but {} columns: numbers have a decimal point, and commas stand between them",
+                     cells, columns);
 }
 
 int for_each_csv_line(std::string_view text, const std::function<bool(int, std::string_view)>& visit) {

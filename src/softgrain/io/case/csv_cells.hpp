@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <functional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -14,6 +16,9 @@ struct CsvCell {
 std::string_view without_blanks(std::string_view text);
 
 std::vector<CsvCell> csv_cells(std::string_view line);
+
+/// What is said of a line with more or fewer cells than there are columns.
+std::string wrong_count(std::size_t cells, std::size_t columns);
 
 /// visit(number from 1, line) of all lines that are not blank and do not begin with #, until it says false. A
 /// byte order mark, with which spreadsheets begin, and line ends of any kind are left out. Returns the number

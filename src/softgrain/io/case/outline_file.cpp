@@ -71,10 +71,7 @@ class Reader {
 
   void read_point(std::string_view line) {
     const std::vector<CsvCell> cells = csv_cells(line);
-    if (cells.size() != columns_.size())
-      return add(1, fmt::format("{} values, but {} columns: numbers have a decimal point, and commas stand "
-                                "between them",
-                                cells.size(), columns_.size()));
+    if (cells.size() != columns_.size()) return add(1, wrong_count(cells.size(), columns_.size()));
     std::array<double, 3> number{};
     for (std::size_t k = 0; k < cells.size(); ++k) {
       const Column column = columns_[k];

@@ -103,10 +103,7 @@ class Reader {
 
   void read_grain(std::string_view line) {
     const std::vector<CsvCell> cells = csv_cells(line);
-    if (cells.size() != columns_.size())
-      return add(1, fmt::format("{} values, but {} columns: numbers have a decimal point, and commas stand "
-                                "between them",
-                                cells.size(), columns_.size()));
+    if (cells.size() != columns_.size()) return add(1, wrong_count(cells.size(), columns_.size()));
     PlacedGrain grain;
     double height = 0;
     bool valid = true;

@@ -10,10 +10,11 @@
 #include "softgrain/experiment/shape_of_case.hpp"
 #include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/case/case_text.hpp"
+#include "support/case_in_folder.hpp"
 #include "support/simulations.hpp"
-#include "support/temporary_directory.hpp"
 
 using namespace softgrain;
+using test::mentions;
 
 namespace {
 
@@ -25,24 +26,10 @@ std::string refusal_of(const std::string& text) {
 }
 
 /// A case with the file house.csv beside it.
-struct HouseCase {
-  test::TemporaryDirectory directory;
-  std::string path;
-
+struct HouseCase : test::CaseInFolder {
   explicit HouseCase(const std::string& more,
-                     const std::string& house = "x, y\n0, 0\n2, 0\n2, 1\n1, 2\n0, 1\n0, 0\n") {
-    directory.file("house.csv", house);
-    path = directory.file("case.toml", "[mpm]\ncells = 4\n" + more);
-  }
-  Case read(const std::vector<std::string>& sets = {}) const { return read_case(path, sets); }
-  std::string refusal(const std::vector<std::string>& sets = {}) const {
-    try {
-      read(sets);
-    } catch (const CaseFileError& error) {
-      return error.what();
-    }
-    return "";
-  }
+                     const std::string& house = "x, y\n0, 0\n2, 0\n2, 1\n1, 2\n0, 1\n0, 0\n")
+      : CaseInFolder("[mpm]\ncells = 4\n" + more, "house.csv", house) {}
 };
 const std::string alone =
     "[experiment]\nmodel = 'mpm'\n[grain]\noutline = 'house.csv'\n[loading]\nmax_strain = 0.1\nwall_velocity "
@@ -52,10 +39,6 @@ const std::string among =
     "m/s'\n"
     "[[kind]]\nname = 'house'\nnumber = 3\noutline = 'house.csv'\n"
     "[[kind]]\nname = 'stone'\nnumber = 3\nmodel = 'rigid'\nshape = 'polygon'\nsides = 3\n";
-
-bool mentions(const std::string& text, const std::string& word) {
-  return text.find(word) != std::string::npos;
-}
 
 }  // namespace
 

@@ -8,10 +8,11 @@
 #include "softgrain/experiment/sample.hpp"
 #include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/case/case_text.hpp"
+#include "support/case_in_folder.hpp"
 #include "support/simulations.hpp"
-#include "support/temporary_directory.hpp"
 
 using namespace softgrain;
+using test::mentions;
 using test::value_of;
 
 namespace {
@@ -21,31 +22,14 @@ const std::string three =
     "2, 2.9, 1, 0, copper\n";
 
 /// A case whose sample is this table, in a folder of its own.
-struct PlacedCase {
-  test::TemporaryDirectory directory;
-  std::string path;
-
-  explicit PlacedCase(const std::string& table, const std::string& more = "") {
-    directory.file("grains.csv", table);
-    path = directory.file("case.toml",
-                          "[experiment]\nloading = 'compaction'\nmodel = 'mpm'\n[mpm]\ncells = "
-                          "4\n[loading]\nmax_strain = 0.1\nwall_velocity = '5 m/s'\n" +
-                              more + "[sample]\nfile = 'grains.csv'\n");
-  }
-  Case read(const std::vector<std::string>& sets = {}) const { return read_case(path, sets); }
-  std::string refusal(const std::vector<std::string>& sets = {}) const {
-    try {
-      read(sets);
-    } catch (const CaseFileError& error) {
-      return error.what();
-    }
-    return "";
-  }
+struct PlacedCase : test::CaseInFolder {
+  explicit PlacedCase(const std::string& table, const std::string& more = "")
+      : CaseInFolder(
+            "[experiment]\nloading = 'compaction'\nmodel = 'mpm'\n[mpm]\ncells = "
+            "4\n[loading]\nmax_strain = 0.1\nwall_velocity = '5 m/s'\n" +
+                more + "[sample]\nfile = 'grains.csv'\n",
+            "grains.csv", table) {}
 };
-
-bool mentions(const std::string& text, const std::string& word) {
-  return text.find(word) != std::string::npos;
-}
 
 }  // namespace
 
