@@ -11,9 +11,22 @@ namespace {
 /// The secant may take a grain at most this many corrections further, and back no further than it came.
 constexpr double furthest = 4;
 
+/// So far a grain moves in an iteration of a quasi-static step, at most, over the mean radius.
+constexpr double largest_move = 0.1;
+
 /// Of a quasi-static step: its largest correction, and the unbalanced force of a grain over its contact
 /// force, in tolerances (docs/decisions/0023).
 constexpr double quasi_static_correction = 8, quasi_static_force = 10;
+
+/// |f|^2 of the node that moves most, lane by lane.
+Wide squared_length(const WideVectors& f) {
+  Wide most = 0.0;
+  for (const Vec<2, Wide>& of_node : f) {
+    const Wide square = dot(of_node, of_node);
+    most = select(square <= most, most, square);  // NaN in one node is NaN in all
+  }
+  return most;
+}
 
 /// df . df and df . f of each lane, df = f - f_before.
 std::array<Wide, 2> change_of(const WideVectors& f, const WideVectors& f_before) {
@@ -66,11 +79,7 @@ double ImplicitDynamics::largest_correction_of_grains() {
   std::vector<std::pair<double, int>> largest(batches());  // |f|^2 and the grain where it is
   const auto look = [&](int b) {
     const GrainBatch& batch = grains.batches[b];
-    Wide most = 0.0;
-    for (const Vec<2, Wide>& of_node : force_[b]) {
-      const Wide square = dot(of_node, of_node);
-      most = select(square <= most, most, square);  // NaN in one node is NaN in all
-    }
+    const Wide most = squared_length(force_[b]);
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
       if (!(most[lane] <= largest[b].first)) largest[b] = {most[lane], batch.grain[lane]};
   };
@@ -141,7 +150,7 @@ void ImplicitDynamics::follow_secant(bool accelerated) {
 ///   y_k+1 = x_k+1 + (t_k - 1)/t_k+1 (x_k+1 - x_k),  x_k+1 = y_k + f(y_k),  t_k+1 = (1 + sqrt(1 + 4
 ///   t_k^2))/2.
 /// Unlike a secant it also speeds up modes that grow, in which grains leave an unstable place.
-/// The last iteration goes by f.
+/// No grain moves by more than `largest_move` in an iteration, and the last one goes by f.
 void ImplicitDynamics::follow_momentum(bool first, bool accelerated) {
   const auto follow = [&](int b) {
     const WideVectors& f = force_[b];
@@ -158,10 +167,17 @@ void ImplicitDynamics::follow_momentum(bool first, bool accelerated) {
       pace_[b].set(lane, 0.5 * (1 + std::sqrt(1 + 4 * t * t)));
       beta.set(lane, accelerated ? (t - 1) / pace_[b][lane] : 0.0);
     }
+    WideVectors move(f.size());
     for (std::size_t i = 0; i < f.size(); ++i) {
       ahead[i] = beta * (f[i] + kept * ahead[i]);
-      grains.batches[b].position[i] += f[i] + ahead[i];
+      move[i] = f[i] + ahead[i];
     }
+    const Wide square = squared_length(move);
+    Wide shortened = 1.0;
+    for (int lane = 0; lane < Wide::size; ++lane)
+      if (const double length = std::sqrt(square[lane]) / mean_radius_; length > largest_move)
+        shortened.set(lane, largest_move / length);
+    for (std::size_t i = 0; i < f.size(); ++i) grains.batches[b].position[i] += shortened * move[i];
     keep_rigid(b);
   };
   share(follow, [&](int b, Message& message) { message(grains.batches[b].position); });

@@ -90,7 +90,7 @@ void ImplicitDynamics::set_flying(double dt) {
     for (int lane = 0; lane < Wide::size; ++lane)
       if (grains.batches[b].grain[lane] < 0) flying_[b].set(lane, 0);
   if (adheres() && quasi_static(dt)) hold_touching();  // a fall would part them
-  if (step_of_matrix(dt) == dt) return;
+  if (!slow(dt)) return;
   hold_touching();
   for (int b = 0; b < batches(); ++b) {
     const GrainBatch& batch = grains.batches[b];

@@ -36,6 +36,13 @@ constexpr int most_patience = 4;
 /// A step that needs more sub-steps, those taken back included, is not of this motion.
 constexpr int most_sub_steps = 2000;
 
+/// Where a matrix is indefinite or a correction too large, a slow step takes the inertia of half the step,
+/// down to this one [R/c].
+constexpr double most_inertia = 2;
+
+/// Grains leave their places by so much more in a slow step than in others, in small iterations.
+constexpr double further_in_slow_steps = 4;
+
 /// Contact force over rho c^2 R from which on it is the measure of unbalanced ones.
 constexpr double least_force = 1e-3;
 
@@ -83,7 +90,7 @@ SoftStepReport ImplicitDynamics::step(double dt) {
   SoftStepReport report;
   box.impulse.assign(box.walls.size(), {});
   if (sub_step <= 0) sub_step = dt;
-  slow_ = step_of_matrix(dt) < dt;
+  slow_ = slow(dt);
   const double shortest = shortest_step * std::min(dt, explicit_step_);
   int tried = 0;
   for (double done = 0; done < dt * (1 - 1e-9);) {
@@ -126,10 +133,9 @@ void ImplicitDynamics::give_up(Failure failure, double dt) const {
 
 ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& report) {
   start(dt);
+  inertia_of_ = floppy(dt) ? options.floppy_inertia_of_at_most : options.inertia_of_at_most;
   const int most = most_iterations(dt);
-  const double proximal = options.proximal * (quasi_static(dt) ? quasi_static_proximal : 1);
-  Failure failure = factor(dt, proximal, report);
-  if (failure == Failure::indefinite_matrix) failure = factor(dt, 4 * proximal, report);
+  Failure failure = renew(dt, report);
   Imbalance left;
   const int renewal = grains.has_history() ? 1 : refactor_every;  // docs/decisions/0038
   for (int iteration = 1; failure == Failure::none; ++iteration) {
@@ -137,23 +143,39 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
     const bool contacts_solved = solve_contacts(dt, report);
     left = correct(iteration == 1, (iteration - 1) % renewal != 0);
     ++report.iterations;
-    if (!(left.correction < largest_correction))
-      return std::isfinite(left.correction) ? Failure::too_far : Failure::not_finite;
+    if (!std::isfinite(left.correction)) return Failure::not_finite;
+    const bool too_far = left.correction >= largest_correction;
+    if (too_far && !more_inertia(dt)) return Failure::too_far;
     if (contacts_solved && left.residual < options.tolerance) {
       if (find_depth() <= deepest * options.tolerance) break;
       failure = iteration == most ? Failure::too_deep : failure;
     } else if (iteration == most) {
       failure = Failure::no_convergence;
     }
-    if (failure == Failure::none && iteration % renewal == 0) failure = factor(dt, proximal, report);
+    if (failure == Failure::none && (too_far || iteration % renewal == 0)) failure = renew(dt, report);
   }
   if (failure == Failure::none) failure = finish(dt, report);
   if (failure == Failure::none) report.residual = std::max(report.residual, left.residual);
   return failure;
 }
 
+/// A, definite.
+ImplicitDynamics::Failure ImplicitDynamics::renew(double dt, SoftStepReport& report) {
+  const double proximal = options.proximal * (quasi_static(dt) ? quasi_static_proximal : 1);
+  Failure failure = factor(dt, proximal, report);
+  while (failure == Failure::indefinite_matrix && more_inertia(dt)) failure = factor(dt, proximal, report);
+  return failure == Failure::indefinite_matrix ? factor(dt, 4 * proximal, report) : failure;
+}
+
+/// In a slow step, where that changes the path of iterations alone. False: A has enough of it.
+bool ImplicitDynamics::more_inertia(double dt) {
+  if (!slow(dt) || inertia_of_ <= most_inertia) return false;
+  inertia_of_ /= 2;
+  return true;
+}
+
 int ImplicitDynamics::most_iterations(double dt) const {
-  if (step_of_matrix(dt) < dt) return options.slow_iterations;
+  if (slow(dt)) return options.slow_iterations;
   return quasi_static(dt) ? options.quasi_static_iterations : options.max_iterations;
 }
 
@@ -170,8 +192,7 @@ bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   system.apply_impulses(felt());
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
-  const bool floppy = step_of_matrix(dt) < dt && mean_contact_force(dt) < least_contact_force_;
-  solver.tolerance = (floppy ? floppy_share : contact_share) * options.tolerance;
+  solver.tolerance = (floppy(dt) ? floppy_share : contact_share) * options.tolerance;
   const SolverReport solved =
       solve_adhesive<2>(system, adhesive, pressed, std::span(impulse), friction_of_contacts(), solver);
   report.sweeps += solved.sweeps;
@@ -228,11 +249,11 @@ ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& re
   };
   share(end_batch, [&](int b, Message& message) { message(failed[b]); });
   if (!none_failed(failed)) return Failure::inverted_point;
-  failed_grain_ = grains.runaway_grain(dt);
+  failed_grain_ = grains.runaway_grain(slow(dt) ? dt / further_in_slow_steps : dt);
   if (failed_grain_ >= 0) return Failure::too_far;
   if (caught) catch_problem(dt);
   flow(dt);
-  if (step_of_matrix(dt) < dt) hold_touching();
+  if (slow(dt)) hold_touching();
   balance_momentum(dt);
   add_work();
   end_step_of_presses(box, contacts, felt(), dt);

@@ -28,12 +28,13 @@ struct ImplicitOptions {
   int max_iterations = 40;  ///< of Newton's method
   /// The same in a quasi-static step; and in one whose inertia A does not have, where iterations also carry
   /// grains into the places that they fall into
-  int quasi_static_iterations = 20, slow_iterations = 200;
+  int quasi_static_iterations = 20, slow_iterations = 400;
   double proximal =
       0.5;  ///< c of the term c p/l on the outline's diagonal of the tangent (p/l contact pressure)
   /// In times of a wave through the smallest grain, R/c (docs/decisions/0023): a (sub-)step longer than this
-  /// is quasi-static, and A has the inertia of a step of at most that
-  double quasi_static_from = 6, inertia_of_at_most = 20;
+  /// is quasi-static, and A has the inertia of a step of at most that; where hardly any force holds the
+  /// grains, of at most the last (docs/decisions/0031)
+  double quasi_static_from = 6, inertia_of_at_most = 20, floppy_inertia_of_at_most = 30;
   /// A is factored in single precision for steps up to this many explicit ones (h/c, stable_time_step); its
   /// condition is about 4 times the square of their ratio (docs/decisions/0019). 0: never
   double single_precision_steps = 60;
@@ -67,7 +68,8 @@ class ImplicitDynamics {
   ImplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains, const ImplicitOptions& implicit_options);
 
   /// One step of dt; walls move by dt times their velocity. A sub-step in which Newton's method or NLGS does
-  /// not converge, that leaves a contact too deep, moves a grain by more than half its radius, inverts a
+  /// not converge, that leaves a contact too deep, moves a grain by more than half its radius (two radii in a
+  /// slow step, whose iterations are small), inverts a
   /// point or makes A indefinite is taken back and tried again with a quarter of its length; sub-steps grow
   /// again while they succeed, also from one step to the next. Raises NumericalError, naming the grain, for
   /// sub-steps far below the explicit one.
@@ -137,8 +139,13 @@ class ImplicitDynamics {
   };
 
   bool quasi_static(double dt) const { return dt > options.quasi_static_from * wave_time_; }
+  /// Longer than any step whose inertia A has.
+  bool slow(double dt) const { return dt > options.inertia_of_at_most * wave_time_; }
   /// The step whose inertia A has [s].
-  double step_of_matrix(double dt) const { return std::min(dt, options.inertia_of_at_most * wave_time_); }
+  double step_of_matrix(double dt) const { return std::min(dt, inertia_of_ * wave_time_); }
+  bool floppy(double dt) const { return slow(dt) && mean_contact_force(dt) < least_contact_force_; }
+  bool more_inertia(double dt);
+  Failure renew(double dt, SoftStepReport& report);
   Failure try_step(double dt, SoftStepReport& report);
   int most_iterations(double dt) const;
   void start(double dt);
@@ -220,7 +227,8 @@ class ImplicitDynamics {
   std::vector<Vec<2>> impulse_start_, felt_;
   std::vector<double> attraction_start_;
   int failed_grain_ = -1;
-  bool slow_ = false;  // the whole step is longer than the one whose inertia A has
+  bool slow_ = false;      // the whole step is slow
+  double inertia_of_ = 0;  // A has the inertia of a step of at most this [R/c]
   MassDamping<2> damping_;
 };
 
