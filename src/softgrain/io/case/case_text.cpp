@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/case/case_kinds.hpp"
 #include "softgrain/io/case/case_stages.hpp"
 #include "softgrain/io/case/case_value.hpp"
@@ -35,6 +36,60 @@ Case compaction(GrainModel model) {
   c.bpm.primaries = 200;
   c.time.step = 0.1e-6;
   return c;
+}
+
+/// 25 elastic grains of coarse grids with friction, and what `path` says.
+Case elastic_grains(const std::string& path) {
+  return parse_case(R"(
+experiment.model = "mpm"
+mpm.cells = 6
+sample.grains = 25
+contact.friction = 0.3
+)" + path,
+                    "template");
+}
+
+Case shear() {
+  return elastic_grains(R"(
+experiment.loading = "shear"
+box = { x = "periodic", y = "periodic" }
+loading = { wall_velocity = 0.2, confining_stress = 1e5, max_strain = 0.4, hold = 0.02, shear_rate = 5, max_shear = 0.5 }
+)");
+}
+
+/// Elastic grains to 0.5 MPa; plastic ones to three times their yield stress.
+Case die(bool plastic) {
+  return elastic_grains(std::string(R"(
+experiment.loading = "die"
+contact.wall_friction = 0.3
+loading = { wall_velocity = 0.05, max_strain = 0.5, hold = 2e-3, eject = true, max_stress = )") +
+                        (plastic ? R"(3e5 }
+mpm.law = "von_mises"
+mpm.poisson_ratio = 0.3
+mpm.yield_stress = 1e5
+mpm.tolerance = 3e-5
+)"
+                                 : "5e5 }\n"));
+}
+
+Case sphere() {
+  return parse_case(R"(
+experiment = { model = "mpm", dimension = 3 }
+grain.radius = 1e-3
+mpm.cells = 6
+loading = { wall_velocity = 1, max_strain = 0.3, unload_at = [] }
+)",
+                    "template");
+}
+
+Case spheres() {
+  return parse_case(R"(
+experiment = { model = "mpm", dimension = 3, loading = "isotropic" }
+mpm.cells = 4
+sample = { grains = 27, packing_fraction = 0.45 }
+loading = { wall_velocity = 3, max_strain = 0.24 }
+)",
+                    "template");
 }
 
 /// How to go from a template to the paper's packings.
@@ -95,6 +150,12 @@ const std::vector<CaseTemplate>& case_templates() {
        compaction(GrainModel::bpm), std::string(more_grains)},
       {"compaction-mpm", "25 elastic grains in a box whose top wall comes down", compaction(GrainModel::mpm),
        std::string(more_grains)},
+      {"shear-mpm", "25 elastic grains in a periodic cell: compressed to a stress, then sheared under it",
+       shear()},
+      {"die-mpm", "25 elastic grains in a die: pressed to a stress, held, unloaded, ejected", die(false)},
+      {"tablet-mpm", "the same of plastic grains, which stay dense: a tablet", die(true)},
+      {"sphere-mpm", "one elastic sphere between two walls, in space", sphere()},
+      {"spheres-mpm", "27 elastic spheres in a box whose six walls come in", spheres()},
   };
   return templates;
 }
