@@ -186,8 +186,11 @@ struct VonMises {
   [[gnu::always_inline]] PlaneStep<T> flow(const Mat<2, T>& F, const State<2, T>& state, double dt) const {
     PlaneStep<T> step{.trial = trial(F, state), .flow = {}, .share = {}, .dW = {}, .ddW = {}, .stored = {}};
     flow_back(step, state[3], dt);
-    // W' = mu share; W'' = mu dshare/du, which is round-off over u where u is next to nothing
-    const T u = max(step.trial.square(), T(1e-20));
+    // W' = mu share; W'' = mu dshare/du. It stands before differences of derivatives of u that are of the
+    // size of u but known to 1e-16: with less than this floor what creeps hardly strained has an indefinite
+    // tangent
+    constexpr double least_square = 1e-12;
+    const T u = max(step.trial.square(), T(least_square));
     step.dW = mu * step.share;
     step.ddW = (0.5 * mu) * (1.0 - step.share - 3.0 * mu * step.flow.slope) / u;
     return step;

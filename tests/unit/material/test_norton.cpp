@@ -3,6 +3,7 @@
 #include "samples.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/material/von_mises.hpp"
+#include "support/random_numbers.hpp"
 
 using namespace softgrain;
 using namespace softgrain::test;
@@ -77,6 +78,36 @@ TEST_CASE("stress and tangent of a point that creeps are derivatives of its incr
       CHECK(difference(tangent, transpose(tangent)) < 1e-12 * largest_entry(tangent));
     }
   }
+}
+
+TEST_CASE(
+    "a point that has hardly been strained answers as an elastic one, whatever its exponent and however "
+    "turned") {
+  // With W'' = mu dshare/du over a floor of 1e-20 for u the tangent was up to 90 mu below zero at 1.05, and
+  // the factor of a grain in flight was not a number.
+  const double elastic_most = 2 * creeping(1).mu;
+  for (const double exponent : {1.05, 1.2, 1.5, 3.0})
+    for (const double strain : {0.0, 1e-16, 1e-14, 1e-12, 1e-10, 1e-9, 1e-8}) {
+      const VonMises part = creeping(exponent).deviatoric();
+      RandomNumbers random(7);
+      double least = 0, most = 0;
+      for (int turn = 0; turn < 40; ++turn) {
+        const double c = std::cos(0.16 * turn), s = std::sin(0.16 * turn);
+        Mat<2> F{{c, -s, s, c}};
+        for (double& f : F.c) f += strain * random.uniform(-1, 1);
+        const Mat<4> tangent = part.tangent(F, VonMises::undeformed<2, double>(), 0.1);
+        for (int k = 0; k < 20; ++k) {
+          Vec<4> d;
+          for (int i = 0; i < 4; ++i) d[i] = random.uniform(-1, 1);
+          const double stiffness = dot(d, tangent * d) / dot(d, d);
+          least = std::min(least, stiffness), most = std::max(most, stiffness);
+        }
+      }
+      CAPTURE(exponent);
+      CAPTURE(strain);
+      CHECK(least > -1e-5 * elastic_most);
+      CHECK(most < 1.001 * elastic_most);
+    }
 }
 
 TEST_CASE("nothing creeps in no time, nor without a deviator, and an undeformed point is quiet") {
