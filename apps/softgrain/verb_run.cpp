@@ -75,8 +75,10 @@ double seconds_of(const std::string& text) {
 }
 
 /// What the user reads when the program is back, and what to do next.
-std::string closing_words(const RunRecord& record, const RunPaths& paths, bool has_page) {
-  const std::string reached = verdict_of(record.report, record.path).words;
+std::string closing_words(const RunRecord& record, const Case& c, const RunPaths& paths, bool has_page) {
+  std::string reached = verdict_of(record.report, record.path).words;
+  for (const std::string& remedy : remedies_of(record.report, c))
+    reached += "\nwhat may help against " + remedy;
   const std::string directory = paths.root.string();
   const auto page = has_page ? fmt::format("look at {} in a browser, or ", paths.report_file().string()) : "";
   const auto early =
@@ -133,7 +135,7 @@ void carry_out(const RunRequest& request, const RunDirectory& directory, const R
   const RunPaths& paths = directory.paths();
   const bool page = request.the_case.output.report && outcome.record.state == "done";
   if (page) write_report({paths.root}, paths.report_file());
-  if (!options.quiet) print_result(closing_words(outcome.record, paths, page));
+  if (!options.quiet) print_result(closing_words(outcome.record, request.the_case, paths, page));
   if (options.quiet && outcome.exit_code == exit_doubtful)
     print_error(verdict_of(outcome.record.report, outcome.record.path).words);
   if (outcome.exit_code != 0) throw ExitCode{outcome.exit_code};

@@ -54,6 +54,9 @@ std::vector<std::string> doubts_of(const RunReport& report, const VerdictLimits&
   return doubts;
 }
 
+/// A run whose steps solve their equations by Newton's method.
+bool is_newton(const Case& c) { return is_elastic(c) && c.mpm.integrator == Integrator::backward_euler; }
+
 }  // namespace
 
 Verdict verdict_of(const RunReport& report, const LoadingOutcome& path, const VerdictLimits& limits) {
@@ -69,6 +72,26 @@ Verdict verdict_of(const RunReport& report, const LoadingOutcome& path, const Ve
   if (!path.shortfall.empty()) verdict.words += "; NOT REACHED: " + path.shortfall;
   if (!path.completed) verdict.doubts.push_back("not reached: " + path.shortfall);
   return verdict;
+}
+
+std::vector<std::string> remedies_of(const RunReport& report, const Case& c, const VerdictLimits& limits) {
+  const std::string smaller_step = "a smaller time.step";
+  const double residual = std::max(report.residual_limit, limits.largest_residual);
+  const bool solved = percent_converged(report) >= 100 * limits.least_converged &&
+                      (report.residual_limit <= 0 || report.residual_max <= residual);
+  std::vector<std::string> remedies;
+  if (!solved)
+    remedies.push_back(
+        "steps that do not converge: " +
+        (is_bonded(c) ? fmt::format("a larger solver.max_sweeps ({} now) or ", c.solver.max_sweeps) : "") +
+        smaller_step);
+  if (!(report.overlap_max <= limits.largest_overlap))
+    remedies.push_back("overlaps: slower walls or " + smaller_step);
+  if (!(report.energy.imbalance() <= limits.largest_imbalance))
+    remedies.push_back("energy: " + (is_newton(c)
+                                         ? fmt::format("a smaller mpm.tolerance ({:g} now)", c.mpm.tolerance)
+                                         : smaller_step));
+  return remedies;
 }
 
 }  // namespace softgrain

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "softgrain/experiment/case.hpp"
 #include "softgrain/experiment/run.hpp"
 
 namespace softgrain {
@@ -31,5 +32,10 @@ struct Verdict {
 /// The one place that judges.
 Verdict verdict_of(const RunReport& report, const LoadingOutcome& path = {},
                    const VerdictLimits& limits = {});
+
+/// What may mend the numbers beyond their limits: keys of the case, and what they are now. Steps that do not
+/// converge and a residual have one remedy.
+std::vector<std::string> remedies_of(const RunReport& report, const Case& c,
+                                     const VerdictLimits& limits = {});
 
 }  // namespace softgrain

@@ -81,3 +81,25 @@ TEST_CASE("energy that comes from nothing is an error of the balance, also where
   energy.add({.wall_work = 5, .dissipation = 3, .error = -0.5});
   CHECK(energy.imbalance() == doctest::Approx(0.1));
 }
+
+TEST_CASE("what may help names the key that acts on the number beyond its limit, and what it is now") {
+  Case elastic, bonded;
+  elastic.experiment.model = GrainModel::mpm;
+  elastic.mpm.tolerance = 3e-4;
+  bonded.experiment.model = GrainModel::bpm;
+  bonded.solver.max_sweeps = 70;
+  CHECK(remedies_of(good(), elastic).empty());
+  RunReport report = good();
+  report.energy.error = 0.2;
+  CHECK(remedies_of(report, elastic) ==
+        std::vector<std::string>{"energy: a smaller mpm.tolerance (0.0003 now)"});
+  CHECK(remedies_of(report, bonded) == std::vector<std::string>{"energy: a smaller time.step"});
+  elastic.mpm.integrator = Integrator::symplectic_euler;
+  CHECK(remedies_of(report, elastic) == std::vector<std::string>{"energy: a smaller time.step"});
+  report = good();
+  report.steps_converged = 15000, report.overlap_max = 0.51, report.residual_max = 0.3;
+  CHECK(remedies_of(report, bonded) ==
+        std::vector<std::string>{
+            "steps that do not converge: a larger solver.max_sweeps (70 now) or a smaller time.step",
+            "overlaps: slower walls or a smaller time.step"});
+}
