@@ -17,6 +17,9 @@ constexpr double largest_move = 0.1;
 /// Of a quasi-static step: its largest correction, and the unbalanced force of a grain over its contact
 /// force, in tolerances (docs/decisions/0023).
 constexpr double quasi_static_correction = 8, quasi_static_force = 10;
+/// The force where A has the inertia of a longer step, as hardly any force holds the grains: what is left of
+/// it works along their long ways (docs/decisions/0031).
+constexpr double floppy_force = 4;
 
 /// |f|^2 of the node that moves most, lane by lane.
 Wide squared_length(const WideVectors& f) {
@@ -68,8 +71,9 @@ ImplicitDynamics::Imbalance ImplicitDynamics::correct(bool first, bool same_matr
     follow_secant(same_matrix && correction >= options.tolerance);
     return {.correction = correction, .residual = correction};
   }
+  const double largest_force = inertia_of_ > options.inertia_of_at_most ? floppy_force : quasi_static_force;
   const double residual =
-      std::max(correction / quasi_static_correction, unbalanced_force(force) / quasi_static_force);
+      std::max(correction / quasi_static_correction, unbalanced_force(force) / largest_force);
   follow_momentum(first, residual >= options.tolerance);
   return {.correction = correction, .residual = residual};
 }

@@ -63,14 +63,20 @@ void ImplicitDynamics::scale_to(double factor) {
   for (double& a : attraction) a *= factor;
 }
 
-/// Grains that carry contacts fly no more.
-void ImplicitDynamics::hold_touching() {
+/// Those that carry contacts.
+std::vector<bool> ImplicitDynamics::touching_grains() const {
   std::vector<bool> touching(grains.size());
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     if (!(impulse[c][0] > 0 || (adheres() && attraction[c] > 0))) continue;
     touching[grains.grain_of_vertex(contacts[c].vertex)] = true;
     if (contacts[c].wall < 0) touching[grains.grain_of_vertex(contacts[c].master[0])] = true;
   }
+  return touching;
+}
+
+/// Grains that carry contacts fly no more.
+void ImplicitDynamics::hold_touching() {
+  const std::vector<bool> touching = touching_grains();
   for (int b = 0; b < batches(); ++b)
     for (int lane = 0; lane < Wide::size && grains.batches[b].grain[lane] >= 0; ++lane)
       if (touching[grains.batches[b].grain[lane]]) flying_[b].set(lane, 0);

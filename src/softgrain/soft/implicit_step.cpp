@@ -40,7 +40,7 @@ constexpr int most_sub_steps = 2000;
 /// down to this one [R/c].
 constexpr double most_inertia = 2;
 
-/// Grains leave their places by so much more in a slow step than in others, in small iterations.
+/// A grain that touches others may leave its place by so much more in a slow step than in others.
 constexpr double further_in_slow_steps = 4;
 
 /// Contact force over rho c^2 R from which on it is the measure of unbalanced ones.
@@ -159,6 +159,16 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
   return failure;
 }
 
+/// The first grain that moved further than is trusted, or -1.
+int ImplicitDynamics::runaway_grain(double dt) {
+  if (!slow(dt)) return grains.runaway_grain(dt);
+  std::vector<double> allowed(grains.size(), 1.0);
+  const std::vector<bool> touching = touching_grains();
+  for (int g = 0; g < grains.size(); ++g)
+    if (touching[g]) allowed[g] = further_in_slow_steps;
+  return grains.runaway_grain(dt, allowed);
+}
+
 /// A, definite.
 ImplicitDynamics::Failure ImplicitDynamics::renew(double dt, SoftStepReport& report) {
   const double proximal = options.proximal * (quasi_static(dt) ? quasi_static_proximal : 1);
@@ -249,7 +259,7 @@ ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& re
   };
   share(end_batch, [&](int b, Message& message) { message(failed[b]); });
   if (!none_failed(failed)) return Failure::inverted_point;
-  failed_grain_ = grains.runaway_grain(slow(dt) ? dt / further_in_slow_steps : dt);
+  failed_grain_ = runaway_grain(dt);
   if (failed_grain_ >= 0) return Failure::too_far;
   if (caught) catch_problem(dt);
   flow(dt);

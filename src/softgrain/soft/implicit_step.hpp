@@ -152,6 +152,8 @@ class ImplicitDynamics {
   void set_flying(double dt);
   Vec<2, Wide> velocity_of_cell(std::size_t b) const;
   void hold_touching();
+  std::vector<bool> touching_grains() const;
+  int runaway_grain(double dt);
   void find_first_contacts();
   void scale_to(double factor);
   void hold_spins(double dt);

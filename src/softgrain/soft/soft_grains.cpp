@@ -201,17 +201,19 @@ double GrainsOf<Dim>::undeformed_area() const {
 }
 
 template <int Dim>
-int GrainsOf<Dim>::runaway_grain(double dt) const {
+int GrainsOf<Dim>::runaway_grain(double dt, std::span<const double> further) const {
   std::vector<int> runaway(batches.size(), -1);
   const auto look = [&](int b) {
     const Batch& batch = batches[b];
     Wide sum = 0.0;
     for (const Vec<Dim, Wide>& v : batch.velocity) sum += dot(v, v);
     const double nodes = static_cast<double>(batch.velocity.size());
-    for (int lane = Wide::size - 1; lane >= 0; --lane)
-      if (batch.grain[lane] >= 0 &&
-          !(dt * std::sqrt(sum[lane] / nodes) < largest_motion * batch.radius[lane]))
-        runaway[b] = batch.grain[lane];
+    for (int lane = Wide::size - 1; lane >= 0; --lane) {
+      const int grain = batch.grain[lane];
+      if (grain < 0) continue;
+      const double most = largest_motion * batch.radius[lane] * (further.empty() ? 1 : further[grain]);
+      if (!(dt * std::sqrt(sum[lane] / nodes) < most)) runaway[b] = grain;
+    }
   };
   shared_for(shares, static_cast<int>(batches.size()), look,
              [&](int b, Message& message) { message(runaway[b]); });

@@ -164,8 +164,8 @@ class GrainsOf {
   double kinetic_energy() const;   ///< sum_i 1/2 m_i v_i^2 [J/m]
   double undeformed_area() const;  ///< of all grains [m^2], in space their volume [m^3]
   /// First grain that moves by more than half its radius in dt (root mean square of its nodes), or not by a
-  /// number; -1 if none does.
-  int runaway_grain(double dt) const;
+  /// number; -1 if none does. further: (grains) of each, by how much more it may; empty: none.
+  int runaway_grain(double dt, std::span<const double> further = {}) const;
 
   /// On all ranks at once: each gets positions, velocities and history of all batches from the ranks that
   /// have them (ModelOf::gather).
