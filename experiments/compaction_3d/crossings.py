@@ -61,14 +61,15 @@ def solid_angle(x, corners):
     return 2 * np.arctan2(volume, flat).sum()
 
 
-def fine_triangles(snapshot, grain, fine):
-    """The patches of one grain as triangles, with corners on the smooth surface."""
+def fine_triangles(snapshot, fine):
+    """Of all grains: the patches as triangles with corners on the smooth surface (2 quads fine^2, 3, 3), and the grain of each."""
     at = np.linspace(0, 1, fine + 1)
     u, v = (a.ravel() for a in np.meshgrid(at, at, indexing="ij"))
     points = patches.points_on(snapshot, u, v)
-    place = points.place[points.grain == grain].reshape(-1, fine + 1, fine + 1, 3)
+    place = points.place.reshape(-1, fine + 1, fine + 1, 3)
     p, q, r, s = (place[:, i:fine + i, j:fine + j].reshape(-1, 3) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1)))
-    return np.concatenate([np.stack([p, q, r], axis=1), np.stack([p, r, s], axis=1)])
+    grain = np.repeat(points.grain.reshape(-1, u.size)[:, 0], fine * fine)
+    return np.concatenate([np.stack([p, q, r], axis=1), np.stack([p, r, s], axis=1)]), np.tile(grain, 2)
 
 
 def look_at(snapshot, fine, move):
@@ -88,8 +89,10 @@ def look_at(snapshot, fine, move):
           f"deeper than 0.002 R {np.sum(deep > 2e-3)}, than 0.005 R {np.sum(deep > 5e-3)}")
     inside = 0
     asked = [] if move else found[:20]
+    if asked:
+        corners, owner = fine_triangles(snapshot, fine)
     for _, x, other in asked:
-        inside += abs(solid_angle(place[x], fine_triangles(snapshot, other, 2 * fine))) > 2 * np.pi
+        inside += abs(solid_angle(place[x], corners[owner == other])) > 2 * np.pi
     if asked:
         print(f"of the {len(asked)} deepest, {inside} lie within the other grain by its solid angle")
     walls = snapshot.surface["walls"].reshape(-1, 4, 3)
