@@ -27,6 +27,15 @@ class Lattice {
   ShapeFunction shape() const { return shape_; }
   double cell() const { return cell_; }  ///< h [m]
   int nodes() const { return static_cast<int>(mass.size()); }
+  /// A grain's nodes in the arrays: from the first one on, row after row.
+  int first_node(int grain) const { return window_[grain].begin; }
+  int columns(int grain) const { return window_[grain].columns; }
+  int rows(int grain) const { return window_[grain].rows; }
+  /// Whether a node is one of a grain's.
+  bool holds(int grain, int node) const {
+    const Window& w = window_[grain];
+    return w.begin <= node && node < w.begin + w.columns * w.rows;
+  }
   /// Index of a grain's node in the arrays.
   int node(int grain, int column, int row) const {
     const Window& w = window_[grain];

@@ -109,6 +109,14 @@ Vec<2> LatticeContacts::combined(int contact, std::span<const Vec<2>> node_veloc
   return sum;
 }
 
+void LatticeContacts::add_impulses(std::span<const Vec<2>> impulse, std::span<Vec<2>> of_nodes) const {
+  for (int c = 0; c < size(); ++c) {
+    const Vec<2>& n = contacts_[c].normal;
+    const Vec<2> P = impulse[c][0] * n + impulse[c][1] * perpendicular(n);
+    for (const NodeWeight& w : weights_of(c)) of_nodes[w.node] += w.weight * P;
+  }
+}
+
 void LatticeContacts::apply_impulse(int contact, const Vec<2>& dp) {
   const Vec<2>& n = contacts_[contact].normal;
   const Vec<2> P = dp[0] * n + dp[1] * perpendicular(n);

@@ -31,6 +31,9 @@ class LatticeContacts {
   /// weights: of slave and master, a node may stand there twice.
   void add(const LatticeContact& contact, std::span<const NodeWeight> weights);
   std::span<const LatticeContact> contacts() const { return contacts_; }
+  std::span<const NodeWeight> weights_of(int contact) const {
+    return std::span(weights_).subspan(begin_[contact], begin_[contact + 1] - begin_[contact]);
+  }
 
   int size() const { return static_cast<int>(contacts_.size()); }
   Mat<2> delassus_block(int contact) const {
@@ -40,12 +43,10 @@ class LatticeContacts {
   void apply_impulse(int contact, const Vec<2>& dp);
   /// sum_i w_i v_i of any velocities of the nodes [m/s].
   Vec<2> combined(int contact, std::span<const Vec<2>> node_velocity) const;
+  /// H p: w_i P of all contacts, added to that of each node [N s/m].
+  void add_impulses(std::span<const Vec<2>> impulse, std::span<Vec<2>> of_nodes) const;
 
  private:
-  std::span<const NodeWeight> weights_of(int contact) const {
-    return std::span(weights_).subspan(begin_[contact], begin_[contact + 1] - begin_[contact]);
-  }
-
   Lattice& lattice_;
   std::vector<LatticeContact> contacts_;
   std::vector<NodeWeight> weights_;

@@ -35,12 +35,17 @@ void take(std::vector<Vec<2>>& some, const std::vector<Vec<2>>& all, std::size_t
 StepReport LatticeGrains::step(Box<2>& box, double dt) {
   const BoxLoan loan(box, dynamics_.box);
   const SoftStepReport soft = dynamics_.step(dt);
-  impulse_time_ = dt;
+  impulse_time_ = dynamics_.impulse_time;
+  ++sums_.steps;
+  sums_.iterations += soft.iterations;
+  sums_.rejected += soft.rejected;
+  const UpdatedLagrangianOptions& options = dynamics_.options;
   return {.contacts = soft.contacts,
           .sweeps = soft.sweeps,
-          .residual_mean = soft.residual_mean,
+          .residual_mean = options.implicit ? soft.residual : soft.residual_mean,
           .residual_max = soft.residual,
-          .residual_limit = dynamics_.options.solver.worst_factor * dynamics_.options.solver.tolerance,
+          .residual_limit =
+              options.implicit ? options.tolerance : options.solver.worst_factor * options.solver.tolerance,
           .overlap_mean = soft.overlap_mean,
           .overlap_max = soft.overlap_max,
           .converged = soft.converged};
@@ -133,6 +138,11 @@ Numbers LatticeGrains::numbers(const Box<2>&) const {
   numbers.emplace_back("contacts", contacts);
   numbers.emplace_back("least_J", least_J);
   numbers.emplace_back("area_ratio", outlines().area / area);
+  if (!dynamics_.options.implicit) return numbers;
+  numbers.emplace_back("iterations", sums_.steps > 0 ? sums_.iterations / sums_.steps : 0);
+  numbers.emplace_back("rejected_steps", sums_.rejected);
+  if (!(dynamics_.options.gravity == Vec<2>{}))
+    numbers.emplace_back("gravity_work", dynamics_.work.gravity);
   return numbers;
 }
 
@@ -190,7 +200,10 @@ std::vector<GrainView> LatticeGrains::grains() const {
 
 Settings LatticeGrains::settings() const {
   const UpdatedLagrangianOptions& options = dynamics_.options;
-  return {.friction = options.friction, .wall_friction = options.wall_friction, .damping = options.damping};
+  Settings settings{
+      .friction = options.friction, .wall_friction = options.wall_friction, .damping = options.damping};
+  if (options.implicit) settings.newton_tolerance = options.tolerance;
+  return settings;
 }
 
 void LatticeGrains::set(const Settings& settings) {
@@ -198,6 +211,7 @@ void LatticeGrains::set(const Settings& settings) {
   options.friction = settings.friction.value_or(options.friction);
   options.wall_friction = settings.wall_friction.value_or(options.wall_friction);
   options.damping = settings.damping.value_or(options.damping);
+  if (options.implicit) options.tolerance = settings.newton_tolerance.value_or(options.tolerance);
 }
 
 void LatticeGrains::visit(StateVisitor& visit) {
@@ -224,6 +238,42 @@ void LatticeGrains::visit(StateVisitor& visit) {
   }
   visit({"impulse_time", "s", Owner::run, Role::start, "the step over which impulses acted"}, impulse_time_);
   visit_work(dynamics_.work, visit);
+  if (dynamics_.options.implicit) visit_implicit(visit);
+}
+
+/// From whose impulses NLGS starts, and sums. Raises IoError for contacts that cannot be.
+void LatticeGrains::visit_implicit(StateVisitor& visit) {
+  std::vector<std::int64_t> bodies;
+  std::vector<Vec<4>> places;
+  for (const LatticeContact& c : dynamics_.contacts) {
+    bodies.insert(bodies.end(), {c.grain, c.other, c.wall, c.vertex});
+    places.push_back({c.node[0], c.node[1], c.normal[0], c.normal[1]});
+  }
+  visit.list({"contact_bodies", "", Owner::contact, Role::start,
+              "grain, other grain, wall, vertex of the outline; -1 where there is none"},
+             bodies, 4);
+  visit.list({"contact_place", "m", Owner::contact, Role::start, "of the node, 0 of a vertex; then the normal"},
+             places);
+  visit.list({"contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t)"}, dynamics_.impulse);
+  visit({"steps_of_row", "", Owner::run, Role::sum, "steps since the last row"}, sums_.steps);
+  visit({"iterations_of_row", "", Owner::run, Role::sum, "iterations since the last row"}, sums_.iterations);
+  visit({"rejected_steps", "", Owner::run, Role::sum, "sub-steps taken back"}, sums_.rejected);
+  if (!visit.reads()) return;
+  if (bodies.size() != 4 * places.size() || places.size() != dynamics_.impulse.size())
+    throw IoError("the snapshot's arrays of contacts have different lengths");
+  dynamics_.contacts.clear();
+  const auto grains = static_cast<std::int64_t>(dynamics_.grains.size());
+  for (std::size_t c = 0; c < places.size(); ++c) {
+    const std::int64_t* of_contact = &bodies[4 * c];
+    if (of_contact[0] < 0 || of_contact[0] >= grains || of_contact[1] < -1 || of_contact[1] >= grains)
+      throw IoError("the snapshot's array 'contact_bodies' names a grain that is not there");
+    dynamics_.contacts.push_back({.grain = static_cast<int>(of_contact[0]),
+                                  .other = static_cast<int>(of_contact[1]),
+                                  .wall = static_cast<int>(of_contact[2]),
+                                  .vertex = static_cast<int>(of_contact[3]),
+                                  .normal = {places[c][2], places[c][3]},
+                                  .node = {places[c][0], places[c][1]}});
+  }
 }
 
 }  // namespace softgrain

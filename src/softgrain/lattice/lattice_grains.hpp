@@ -19,6 +19,7 @@ class LatticeGrains final : public Model {
   void visit(StateVisitor& visit) override;
   Settings settings() const override;
   void set(const Settings& settings) override;
+  void begin_row() override { sums_.steps = sums_.iterations = 0; }
 
   double density() const override { return dynamics_.density; }
   std::vector<double> radii() const override;
@@ -36,8 +37,15 @@ class LatticeGrains final : public Model {
   const UpdatedLagrangianDynamics& dynamics() const { return dynamics_; }
 
  private:
+  /// Steps and iterations since the last row; sub-steps taken back over the run.
+  struct Sums {
+    double steps = 0, iterations = 0, rejected = 0;
+  };
+  void visit_implicit(StateVisitor& visit);
+
   UpdatedLagrangianDynamics dynamics_;
   double impulse_time_ = 0;  // [s]
+  Sums sums_;                // of implicit steps
 };
 
 }  // namespace softgrain

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
-#include <variant>
 
 #include "softgrain/contact/nlgs.hpp"
 #include "softgrain/core/error.hpp"
-#include "softgrain/material/elastic_law.hpp"
+#include "softgrain/lattice/with_elastic.hpp"
 
 namespace softgrain {
 namespace {
@@ -15,16 +13,6 @@ namespace {
 /// Smallest mass of a node that has a share in the outline, or in contacts on nodes, over that of a full
 /// cell. With lighter nodes a vertex would throw the points beside them about.
 constexpr double least_outline_share = 1e-3, least_node_share = 1e-5;
-
-/// visit(law) of an elastic law: points that move through the lattice do not keep what they remember.
-template <class Visit, class Result = std::invoke_result_t<Visit, const Hencky&>>
-Result with_elastic(const AnyLaw& law, Visit&& visit) {
-  const auto elastic = [&]<class Law>(const Law& some) -> Result {
-    if constexpr (ElasticLaw<Law, 2>) return visit(some);
-    throw UsageError("the updated Lagrangian formulation takes elastic laws only, none that flows");
-  };
-  return std::visit(elastic, law);
-}
 
 }  // namespace
 
@@ -58,6 +46,10 @@ UpdatedLagrangianDynamics::UpdatedLagrangianDynamics(std::vector<PointGrain> poi
 
 SoftStepReport UpdatedLagrangianDynamics::step(double dt) {
   check_wall_motion(box, dt, smallest_radius_);
+  return options.implicit ? implicit_step(dt) : explicit_step(dt);
+}
+
+SoftStepReport UpdatedLagrangianDynamics::explicit_step(double dt) {
   damping_ = {options.damping, dt, box};
   box.advance(dt);
   work.internal += kinetic_energy_of_points();
@@ -69,19 +61,19 @@ SoftStepReport UpdatedLagrangianDynamics::step(double dt) {
   work.internal -= kinetic_energy_of_nodes();
 
   LatticeContacts system(lattice_);
+  find_outline_weights();
   find_contacts(system, dt);
-  std::vector<double> friction;
-  for (const LatticeContact& c : system.contacts())
-    friction.push_back(c.wall >= 0 ? options.wall_friction : options.friction);
+  const std::vector<double> friction = friction_of(system.contacts());
   impulse.assign(system.size(), {});
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
   const SolverReport solved = solve_nlgs<2>(system, std::span(impulse), friction, solver);
   contacts.assign(system.contacts().begin(), system.contacts().end());
+  impulse_time = dt;
   add_contact_work(system);
 
   work.internal += kinetic_energy_of_nodes();
-  move_points(dt);
+  move_points(dt, options.pic_share);
   move_outlines(dt);
   work.internal -= kinetic_energy_of_points();
   gather_momentum();
@@ -203,7 +195,7 @@ void UpdatedLagrangianDynamics::add_contact_work(const LatticeContacts& system) 
   }
 }
 
-void UpdatedLagrangianDynamics::find_contacts(LatticeContacts& system, double dt) {
+void UpdatedLagrangianDynamics::find_outline_weights() {
   const double full_cell = density * options.cell * options.cell;
   outline_.first_vertex.assign(1, 0);
   outline_.weights.clear();
@@ -216,6 +208,10 @@ void UpdatedLagrangianDynamics::find_contacts(LatticeContacts& system, double dt
     }
     outline_.first_vertex.push_back(static_cast<int>(outline_.weights.size()));
   }
+}
+
+void UpdatedLagrangianDynamics::find_contacts(LatticeContacts& system, double dt) const {
+  const double full_cell = density * options.cell * options.cell;
   if (options.contact_on == ContactOn::outline)
     add_outline_contacts(grains, lattice_, outline_, box.walls, dt, system);
   else
@@ -223,8 +219,15 @@ void UpdatedLagrangianDynamics::find_contacts(LatticeContacts& system, double dt
                       options.wall_reach * options.cell, system);
 }
 
+std::vector<double> UpdatedLagrangianDynamics::friction_of(std::span<const LatticeContact> of) const {
+  std::vector<double> friction;
+  for (const LatticeContact& c : of)
+    friction.push_back(c.wall >= 0 ? options.wall_friction : options.friction);
+  return friction;
+}
+
 /// v_p += sum_i N_i (v_i+ - v_i-);  x_p += dt sum_i N_i v_i+.
-void UpdatedLagrangianDynamics::move_points(double dt) {
+void UpdatedLagrangianDynamics::move_points(double dt, double pic_share) {
   for (int g = 0; g < static_cast<int>(grains.size()); ++g) {
     PointGrain& grain = grains[g];
     double squares = 0;  // of velocities
@@ -236,7 +239,7 @@ void UpdatedLagrangianDynamics::move_points(double dt) {
         v += N * lattice_.velocity[i];
         dv += N * (lattice_.velocity[i] - start_velocity_[i]);
       });
-      grain.velocity[p] = (1 - options.pic_share) * (grain.velocity[p] + dv) + options.pic_share * v;
+      grain.velocity[p] = (1 - pic_share) * (grain.velocity[p] + dv) + pic_share * v;
       grain.position[p] += dt * v;
       squares += dot(v, v);
     }
