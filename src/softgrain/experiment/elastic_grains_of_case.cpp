@@ -9,6 +9,7 @@
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/kinds.hpp"
+#include "softgrain/experiment/lattice_case.hpp"
 #include "softgrain/experiment/shape_of_case.hpp"
 #include "softgrain/experiment/solid_case.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
@@ -79,10 +80,6 @@ double cell_of(const Case& c) {
   return radius * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells;  // 14 cells^2 points, 4 to a cell
 }
 
-bool is_lattice(const Case& c) {
-  return is_elastic(c) && c.mpm.formulation == Formulation::updated_lagrangian;
-}
-
 /// Grains of points on one lattice: that of the case between two walls, or a sample in a box.
 PlacedModel lattice_grains_of(const Case& c) {
   const double cell = cell_of(c);
@@ -93,8 +90,8 @@ PlacedModel lattice_grains_of(const Case& c) {
     for (const PlacedGrain& grain : sample.grains)
       grains.push_back(disk_of_points(grain.radius, grain.centre, cell, 8 * c.mpm.cells));
     box = box_of(sample);
-    require(c.kinds.empty() && box.bounded(0) && box.bounded(1),
-            "mpm.formulation 'updated_lagrangian' takes grains of one material between walls");
+    const std::string cannot = lattice_cannot(c);
+    require(cannot.empty(), "{}", cannot);
   } else {
     grains.push_back(disk_of_points(c.grain.radius, {}, cell, 8 * c.mpm.cells));
     double reach = 0;  // the outline is symmetric about both axes
@@ -108,8 +105,12 @@ PlacedModel lattice_grains_of(const Case& c) {
                                       .friction = c.contact.friction,
                                       .wall_friction = c.contact.wall_friction,
                                       .gravity = gravity_of(c),
-                                      .damping = c.mpm.damping});
-  const double dt = c.time.step > 0 ? c.time.step : stable_time_step(dynamics.law, dynamics.density, cell);
+                                      .damping = c.mpm.damping,
+                                      .implicit = c.mpm.integrator == Integrator::backward_euler,
+                                      .tolerance = c.mpm.tolerance});
+  const double dt = c.time.step > 0            ? c.time.step
+                    : dynamics.options.implicit ? first_time_step(c)
+                                               : stable_time_step(dynamics.law, dynamics.density, cell);
   return {std::make_unique<LatticeGrains>(std::move(dynamics)), std::move(box), dt};
 }
 
@@ -156,8 +157,8 @@ double longest_time_step(const Case& c) {
   constexpr double no_limit = std::numeric_limits<double>::infinity();
   if (is_bonded(c)) return no_limit;
   if (is_in_space(c)) return longest_solid_step(c);
-  if (is_lattice(c)) return stable_time_step(law_of(c), c.grain.density, cell_of(c), 0.2 * (1 + 1e-9));
   if (c.mpm.integrator != Integrator::symplectic_euler) return no_limit;
+  if (is_lattice(c)) return stable_time_step(law_of(c), c.grain.density, cell_of(c), 0.2 * (1 + 1e-9));
   const auto longest = [](const Case& of_kind) {
     if (is_rigid(of_kind)) return no_limit;
     const double radius = !is_in_a_box(of_kind)           ? of_kind.grain.radius

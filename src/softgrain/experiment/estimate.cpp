@@ -6,6 +6,7 @@
 
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/kinds.hpp"
+#include "softgrain/experiment/lattice_case.hpp"
 #include "softgrain/experiment/sample.hpp"
 #include "softgrain/experiment/shape_of_case.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
@@ -14,12 +15,7 @@
 namespace softgrain {
 namespace {
 
-bool is_updated_lagrangian(const Case& c) {
-  return is_elastic(c) && c.mpm.formulation == Formulation::updated_lagrangian;
-}
-bool is_implicit(const Case& c) {
-  return c.mpm.integrator == Integrator::backward_euler && !is_updated_lagrangian(c);
-}
+bool is_implicit(const Case& c) { return c.mpm.integrator == Integrator::backward_euler; }
 double grains(const Case& c) { return !is_in_a_box(c) ? 1 : c.sample.grains; }
 double smallest_radius(const Case& c) {
   return !is_in_a_box(c) ? c.grain.radius : c.sample.smallest_diameter / 2;
@@ -107,17 +103,30 @@ double implicit_time_step(const Case& c, double R) {
   return p > 0 ? std::min(step, R * std::sqrt(c.grain.density / p)) : step;
 }
 
+namespace {
+
+/// That of other implicit steps, but at most 20 times what a wave needs through the smallest radius: in
+/// longer ones A has hardly any inertia, which alone holds a grain that touches none.
+double implicit_lattice_step(const Case& c) {
+  constexpr double most_waves = 20;
+  const double R = smallest_radius(c), wave = std::sqrt(wave_modulus(c) / c.grain.density);
+  return std::min(implicit_time_step(c, R), most_waves * R / wave);
+}
+
+}  // namespace
+
 double first_time_step(const Case& c) {
   if (is_bonded(c)) return c.time.step > 0 ? c.time.step : stable_bond_step(c);
   if (c.time.step > 0) return c.time.step;
   if (is_in_space(c) && !c.kinds.empty()) return least_of_kinds(c, first_time_step);
   if (is_in_space(c) && !is_rigid(c))
     return 0.36 * smallest_radius(c) / c.mpm.cells / std::sqrt(wave_modulus(c) / c.grain.density);
+  if (is_lattice(c) && is_implicit(c)) return implicit_lattice_step(c);
   if (is_implicit(c) || is_rigid(c)) return implicit_time_step(c, smallest_radius(c));
   if (!c.kinds.empty()) return least_of_kinds(c, first_time_step);
   // a share of the time in which a pressure wave crosses a cell; pi R^2 = 3.5 cells^2 h^2
   const double cell = smallest_radius(c) * std::sqrt(std::numbers::pi / 3.5) / c.mpm.cells * cell_share(c);
-  return (is_updated_lagrangian(c) ? 0.2 : 0.26) * cell / std::sqrt(wave_modulus(c) / c.grain.density);
+  return (is_lattice(c) ? 0.2 : 0.26) * cell / std::sqrt(wave_modulus(c) / c.grain.density);
 }
 
 namespace {
@@ -136,7 +145,7 @@ bool remembers(const Case& c) {
 
 /// Of all grains that are not bonded.
 double points(const Case& c) {
-  if (is_updated_lagrangian(c) && is_in_a_box(c)) {  // on one lattice, the cell that of the smallest grain
+  if (is_lattice(c) && is_in_a_box(c)) {  // on one lattice, the cell that of the smallest grain
     const double R = smallest_radius(c);
     return points_of_grain(c) * grain_area(c) / (std::numbers::pi * R * R);
   }
@@ -165,7 +174,7 @@ double seconds_of_step(const Case& c, const Estimate& e) {
   const int sweeps =
       std::clamp(usual_sweeps, c.solver.min_sweeps, std::max(c.solver.min_sweeps, c.solver.max_sweeps));
   if (is_bonded(c)) return e.contacts * sweeps * (c.solver.precision == Precision::single ? 4.1e-9 : 5.5e-9);
-  if (is_updated_lagrangian(c)) return e.particles * 1.1e-7;
+  if (is_lattice(c)) return e.particles * (is_implicit(c) ? 2e-7 * c.mpm.cells : 1.1e-7);
   if (is_in_space(c)) return std::ceil(grains(c) / 8) * 8 / grains(c) * e.particles * 1.6e-8;
   const double batches = std::ceil(grains(c) / 8);  // a batch of 8 grains costs the same when it is not full
   const double flow = !remembers(c) ? 1 : is_implicit(c) ? flow_factor_implicit : flow_factor_explicit;

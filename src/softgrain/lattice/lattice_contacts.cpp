@@ -130,7 +130,7 @@ void add_node_contacts(const Lattice& lattice, int grains, std::span<const Wall<
     lattice.for_each_node(g, [&](int i, const Vec<2>& x) {
       if (lattice.mass[i] <= least_mass) return;
       for (int w = 0; w < static_cast<int>(walls.size()); ++w)
-        if (dot(x - walls[w].point, walls[w].normal) < wall_reach)
+        if (!walls[w].open && dot(x - walls[w].point, walls[w].normal) < wall_reach)
           contacts.add({.grain = g,
                         .wall = w,
                         .normal = walls[w].normal,
@@ -165,7 +165,7 @@ void add_outline_contacts(std::span<const PointGrain> grains, const Lattice& lat
       for (int w = 0; w < static_cast<int>(walls.size()); ++w) {
         const Vec<2>& n = walls[w].normal;
         const double gap = dot(x - walls[w].point, n);  // the wall stands where the step ends
-        if (gap > reach) continue;
+        if (walls[w].open || gap > reach) continue;
         const double free_rate = dot(n, velocity_of(lattice, slave) - walls[w].velocity);
         contacts.add({.grain = g,
                       .wall = w,

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <tuple>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/sample.hpp"
@@ -19,6 +21,7 @@ Case one_grain() {
   c.experiment = {.loading = LoadingPath::diametral, .model = GrainModel::mpm};
   c.mpm.cells = 4;
   c.mpm.formulation = Formulation::updated_lagrangian;
+  c.mpm.integrator = Integrator::symplectic_euler;
   c.contact.wall_friction = 0.2;
   c.loading.wall_velocity = 2;
   c.loading.max_strain = 0.1;
@@ -34,6 +37,7 @@ Case box_of_grains() {
   c.sample.packing_fraction = 0.6;
   c.mpm.cells = 3;
   c.mpm.formulation = Formulation::updated_lagrangian;
+  c.mpm.integrator = Integrator::symplectic_euler;
   c.contact.friction = 0.3;
   c.loading.wall_velocity = 20;
   c.loading.max_strain = 0.3;
@@ -58,13 +62,19 @@ Case two_grains(double gap) {
 }  // namespace
 
 TEST_CASE("an updated-Lagrangian run that goes on from a checkpoint has the bits of one that never stopped") {
-  for (const auto& [given, contact_on] : {std::pair{one_grain(), ContactOn::outline},
-                                          {one_grain(), ContactOn::grid_nodes},
-                                          {box_of_grains(), ContactOn::outline},
-                                          {box_of_grains(), ContactOn::grid_nodes}}) {
+  using enum Integrator;
+  for (const auto& [given, contact_on, integrator] :
+       {std::tuple{one_grain(), ContactOn::outline, symplectic_euler},
+        {one_grain(), ContactOn::grid_nodes, symplectic_euler},
+        {box_of_grains(), ContactOn::outline, symplectic_euler},
+        {box_of_grains(), ContactOn::grid_nodes, symplectic_euler},
+        {one_grain(), ContactOn::outline, backward_euler},
+        {box_of_grains(), ContactOn::grid_nodes, backward_euler}}) {
     CAPTURE(contact_on);
+    CAPTURE(integrator);
     Case c = given;
     c.mpm.contact_on = contact_on;
+    c.mpm.integrator = integrator;
     const auto whole = create_simulation(c);
     advance(*whole, whole->steps_planned() / 2);
     CHECK(value_of(test::next_row(*whole), "contacts") > 2);
@@ -202,8 +212,47 @@ TEST_CASE("grains that meet on nodes push on each other before their outlines me
   }
 }
 
-TEST_CASE("the updated Lagrangian takes no cell that repeats") {
+TEST_CASE("an implicit lattice packing accounts for its energy, and gives it back but for what is lost") {
+  Case c = box_of_grains();
+  c.mpm.contact_on = ContactOn::grid_nodes;
+  c.mpm.integrator = Integrator::backward_euler;
+  c.loading.wall_velocity = 5;
+  const auto simulation = create_simulation(c);
+  while (!simulation->finished()) simulation->step();
+  const auto row = test::next_row(*simulation);
+  const auto value = [&](std::string_view name) { return value_of(row, name); };
+  CHECK(value("strain") == doctest::Approx(0.3).epsilon(0.01));
+  CHECK(value("wall_work") > 0);
+  CHECK(std::abs(value("energy_error")) < 2e-3 * value("wall_work"));
+  CHECK(value("dissipation_friction") >= 0);
+  CHECK(value("iterations") >= 2);
+  CHECK(value("z_with_walls") > 2);
+}
+
+TEST_CASE("four walls press grains on a lattice, and stages of one's own move them") {
+  for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::backward_euler}) {
+    CAPTURE(integrator);
+    Case c = box_of_grains();
+    c.mpm.contact_on = ContactOn::grid_nodes;
+    c.mpm.integrator = integrator;
+    c.experiment.loading = LoadingPath::isotropic;
+    c.loading.max_strain = 0.25;
+    const auto simulation = create_simulation(c);
+    while (!simulation->finished()) simulation->step();
+    const auto row = test::next_row(*simulation);
+    CHECK(value_of(row, "stress_bottom") > 0);
+    CHECK(value_of(row, "stress_side") > 0);
+    CHECK(value_of(row, "z_with_walls") > 2);
+  }
+}
+
+TEST_CASE("the updated Lagrangian takes no cell that repeats, and no wall that keeps a stress") {
   Case c = box_of_grains();
   c.box.x = c.box.y = BoxEnd::periodic;
+  CHECK_THROWS_AS(create_simulation(c), UsageError);
+  c = box_of_grains();
+  c.experiment.loading = LoadingPath::biaxial;
+  c.loading.confining_stress = 1e5;
+  c.loading.max_strain = 0.1;
   CHECK_THROWS_AS(create_simulation(c), UsageError);
 }

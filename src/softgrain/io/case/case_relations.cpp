@@ -11,6 +11,7 @@
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/solid_case.hpp"
+#include "softgrain/experiment/lattice_case.hpp"
 #include "softgrain/io/case/scope.hpp"
 #include "softgrain/io/case/shape_check.hpp"
 #include "softgrain/io/case/words.hpp"
@@ -205,17 +206,7 @@ std::string law_impossible(const Case& c) {
 std::string formulation_cannot(const Case& c) {
   const bool updated = c.mpm.formulation == Formulation::updated_lagrangian;
   if (!is_elastic(c)) return "";
-  if (updated && c.experiment.loading != LoadingPath::diametral &&
-      c.experiment.loading != LoadingPath::compaction)
-    return fmt::format(
-        "mpm.formulation \"updated_lagrangian\" needs experiment.loading \"diametral\" or \"compaction\", "
-        "not "
-        "\"{}\"",
-        word_of(c.experiment.loading));
-  if (updated && (c.box.x == BoxEnd::periodic || c.box.y == BoxEnd::periodic))
-    return "mpm.formulation \"updated_lagrangian\" needs walls: leave out box.x and box.y \"periodic\"";
-  if (updated && !c.kinds.empty())
-    return "mpm.formulation \"updated_lagrangian\" takes grains of one material: leave out [[kind]]";
+  if (std::string cannot = lattice_cannot(c); !cannot.empty()) return cannot;
   if (updated && law_impossible(c).empty() && law_choice(c.mpm.law).remembers())
     return fmt::format("mpm.formulation \"updated_lagrangian\" takes elastic laws only, not mpm.law \"{}\"",
                        word_of(c.mpm.law));
