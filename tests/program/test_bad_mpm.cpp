@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/subprocess.hpp"
@@ -51,6 +52,29 @@ TEST_CASE("soft grains that cannot be are refused with the key, the value and wh
     CHECK(result.err.find(remedy) != std::string::npos);
     CHECK_FALSE(fs::exists(directory.path() / "out" / "run.json"));
   }
+}
+
+TEST_CASE("what a lattice does not have is refused with the key and what would do") {
+  const TemporaryDirectory directory;
+  const std::string lattice = "mpm.formulation=\"updated_lagrangian\"";
+  for (const auto& [settings, remedy] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"experiment.loading=\"biaxial\"", "loading.confining_stress=\"0.1 MPa\""},
+            "it needs experiment.loading \"diametral\", \"compaction\", \"isotropic\""},
+           {{"loading.hold_stress=\"0.1 MPa\"", "loading.hold=\"1 ms\""}, "leave out loading.hold_stress"},
+           {{"box.x=\"periodic\"", "box.y=\"periodic\""}, "needs walls: leave out box.x"},
+       }) {
+    std::vector<std::string> all{lattice};
+    all.insert(all.end(), settings.begin(), settings.end());
+    const ProcessResult result = run_box(directory, all);
+    CAPTURE(result.err);
+    CHECK(result.exit_code == 2);
+    CHECK(result.err.find("mpm.formulation") != std::string::npos);
+    CHECK(result.err.find(remedy) != std::string::npos);
+  }
+  const ProcessResult implicit = run_box(
+      directory, {lattice, "mpm.integrator=\"implicit\"", "time.step=\"2 us\"", "loading.max_strain=0.01"});
+  CAPTURE(implicit.err);
+  CHECK(implicit.exit_code == 0);
 }
 
 TEST_CASE("an explicit step beyond the stable one is refused, with the stable one and the remedy") {

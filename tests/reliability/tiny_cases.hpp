@@ -179,6 +179,9 @@ inline std::vector<TinyCase> tiny_cases() {
                "contact.friction=0", "contact.wall_friction=0"});
   add_variant("updated-lagrangian-box", "compaction-mpm",
               {"mpm.formulation=\"updated_lagrangian\"", "mpm.contact_on=\"grid_nodes\"", "time.step=0"});
+  add_variant("updated-lagrangian-implicit", "compaction-mpm",
+              {"mpm.formulation=\"updated_lagrangian\"", "mpm.contact_on=\"grid_nodes\"",
+               "mpm.integrator=\"implicit\"", "time.step=0"});
   return cases;
 }
 

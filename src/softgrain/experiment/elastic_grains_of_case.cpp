@@ -108,9 +108,9 @@ PlacedModel lattice_grains_of(const Case& c) {
                                       .damping = c.mpm.damping,
                                       .implicit = c.mpm.integrator == Integrator::backward_euler,
                                       .tolerance = c.mpm.tolerance});
-  const double dt = c.time.step > 0            ? c.time.step
+  const double dt = c.time.step > 0             ? c.time.step
                     : dynamics.options.implicit ? first_time_step(c)
-                                               : stable_time_step(dynamics.law, dynamics.density, cell);
+                                                : stable_time_step(dynamics.law, dynamics.density, cell);
   return {std::make_unique<LatticeGrains>(std::move(dynamics)), std::move(box), dt};
 }
 

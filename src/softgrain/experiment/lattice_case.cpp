@@ -30,10 +30,12 @@ std::string lattice_cannot(const Case& c) {
       return cannot(
           "moves walls at given speeds, none that keeps a stress: it needs experiment.loading \"diametral\", "
           "\"compaction\", \"isotropic\", \"relaxation\" or tables [[stage]] without stress");
-    default: break;
+    default:
+      break;
   }
   if (c.loading.hold_stress > 0)
-    return cannot("has no walls that keep a stress: leave out loading.hold_stress, and end at loading.max_stress");
+    return cannot(
+        "has no walls that keep a stress: leave out loading.hold_stress, and end at loading.max_stress");
   if (std::any_of(c.stages.begin(), c.stages.end(), keeps_a_stress))
     return cannot("has no walls that keep a stress: a [[stage]] gives them a velocity or a rate");
   return "";

@@ -50,7 +50,8 @@ void CompliantContacts::find_shares(const Lattice& lattice, std::span<const Grai
   for (int c = 0; c < size(); ++c) {
     const LatticeContact& contact = contacts_.contacts()[c];
     for (const NodeWeight& w : contacts_.weights_of(c)) {
-      const int g = contact.other >= 0 && lattice.holds(contact.other, w.node) ? contact.other : contact.grain;
+      const int g =
+          contact.other >= 0 && lattice.holds(contact.other, w.node) ? contact.other : contact.grain;
       const std::vector<int>& unknown = grain_[g].unknown;
       const auto found = std::lower_bound(unknown.begin(), unknown.end(), equations[g].unknown(w.node));
       shares_.push_back({g, grain_[g].first + static_cast<int>(found - unknown.begin()), w.weight});
@@ -69,8 +70,9 @@ Mat<2> CompliantContacts::find_delassus(int contact) const {
       const std::size_t stride = 2 * grain.unknown.size();
       for (int a = 0; a < 2; ++a)
         for (int b = 0; b < 2; ++b)
-          W(a, b) += i.weight * j.weight *
-                     grain.compliance[(2 * (i.place - grain.first) + a) * stride + 2 * (j.place - grain.first) + b];
+          W(a, b) +=
+              i.weight * j.weight *
+              grain.compliance[(2 * (i.place - grain.first) + a) * stride + 2 * (j.place - grain.first) + b];
     }
   const Vec<2>& n = contacts_.contacts()[contact].normal;
   const Vec<2> t = perpendicular(n), along_n = W * n, along_t = W * t;

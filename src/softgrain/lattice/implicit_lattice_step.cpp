@@ -66,10 +66,10 @@ void UpdatedLagrangianDynamics::give_up(Failure failure, double dt) const {
                       : failure == Failure::indefinite_matrix ? "the stiffness is indefinite"
                       : failure == Failure::not_finite        ? "a correction is not finite"
                                                               : "Newton's method does not converge";
-  throw NumericalError(
-      fmt::format("the implicit step on the lattice failed even at dt = {:.3g} s: {} in grain {}; use a smaller "
-                  "time.step or a larger mpm.tolerance, or end at a smaller strain",
-                  dt, cause, failed_grain_));
+  throw NumericalError(fmt::format(
+      "the implicit step on the lattice failed even at dt = {:.3g} s: {} in grain {}; use a smaller "
+      "time.step or a larger mpm.tolerance, or end at a smaller strain",
+      dt, cause, failed_grain_));
 }
 
 UpdatedLagrangianDynamics::Failure UpdatedLagrangianDynamics::try_step(double dt, SoftStepReport& report) {
@@ -128,15 +128,14 @@ UpdatedLagrangianDynamics::Failure UpdatedLagrangianDynamics::solve_nodes(double
       contacts.assign(system->contacts().begin(), system->contacts().end());
       carry_impulses(old, old_impulse);
     }
-    compliant.emplace(CompliantContacts(lattice_, *system, equations_, dt,
-                                        fresh || !compliant ? nullptr : &*compliant));
+    compliant.emplace(
+        CompliantContacts(lattice_, *system, equations_, dt, fresh || !compliant ? nullptr : &*compliant));
     correction_ = residual_;
     solve_grains(correction_);
     std::vector<Vec<2>> free_velocity = lattice_.velocity;
     for (int i = 0; i < lattice_.nodes(); ++i) free_velocity[i] += (1 / dt) * correction_[i];
     compliant->start(free_velocity, impulse);
-    const SolverReport solved =
-        solve_nlgs<2>(*compliant, std::span(impulse), friction_of(contacts), solver);
+    const SolverReport solved = solve_nlgs<2>(*compliant, std::span(impulse), friction_of(contacts), solver);
     report.sweeps += solved.sweeps;
     ++report.iterations;
 
@@ -185,8 +184,7 @@ UpdatedLagrangianDynamics::Failure UpdatedLagrangianDynamics::factor(double dt, 
   report.factorisations += static_cast<int>(grains.size());
   std::vector<char> fine(grains.size());
   parallel_for(static_cast<int>(grains.size()), [&](int g) {
-    fine[g] = static_cast<char>(
-        equations_[g].factor(lattice_, grains[g], stencil_[g], end_F_[g], law, dt));
+    fine[g] = static_cast<char>(equations_[g].factor(lattice_, grains[g], stencil_[g], end_F_[g], law, dt));
   });
   const auto bad = std::find(fine.begin(), fine.end(), 0);
   if (bad == fine.end()) return Failure::none;
@@ -205,6 +203,13 @@ void UpdatedLagrangianDynamics::solve_grains(std::span<Vec<2>> of_nodes) const {
     std::fill_n(of_nodes.begin() + first, lattice_.columns(g) * lattice_.rows(g), Vec<2>{});
     for (std::size_t k = 0; k < nodes.size(); ++k) of_nodes[nodes[k]] = x[k];
   });
+}
+
+std::vector<double> UpdatedLagrangianDynamics::friction_of(std::span<const LatticeContact> of) const {
+  std::vector<double> friction;
+  for (const LatticeContact& c : of)
+    friction.push_back(c.wall >= 0 ? options.wall_friction : options.friction);
+  return friction;
 }
 
 /// Over the mean radius.

@@ -141,8 +141,7 @@ Numbers LatticeGrains::numbers(const Box<2>&) const {
   if (!dynamics_.options.implicit) return numbers;
   numbers.emplace_back("iterations", sums_.steps > 0 ? sums_.iterations / sums_.steps : 0);
   numbers.emplace_back("rejected_steps", sums_.rejected);
-  if (!(dynamics_.options.gravity == Vec<2>{}))
-    numbers.emplace_back("gravity_work", dynamics_.work.gravity);
+  if (!(dynamics_.options.gravity == Vec<2>{})) numbers.emplace_back("gravity_work", dynamics_.work.gravity);
   return numbers;
 }
 
@@ -252,8 +251,9 @@ void LatticeGrains::visit_implicit(StateVisitor& visit) {
   visit.list({"contact_bodies", "", Owner::contact, Role::start,
               "grain, other grain, wall, vertex of the outline; -1 where there is none"},
              bodies, 4);
-  visit.list({"contact_place", "m", Owner::contact, Role::start, "of the node, 0 of a vertex; then the normal"},
-             places);
+  visit.list(
+      {"contact_place", "m", Owner::contact, Role::start, "of the node, 0 of a vertex; then the normal"},
+      places);
   visit.list({"contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t)"}, dynamics_.impulse);
   visit({"steps_of_row", "", Owner::run, Role::sum, "steps since the last row"}, sums_.steps);
   visit({"iterations_of_row", "", Owner::run, Role::sum, "iterations since the last row"}, sums_.iterations);

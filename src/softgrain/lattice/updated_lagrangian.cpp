@@ -219,13 +219,6 @@ void UpdatedLagrangianDynamics::find_contacts(LatticeContacts& system, double dt
                       options.wall_reach * options.cell, system);
 }
 
-std::vector<double> UpdatedLagrangianDynamics::friction_of(std::span<const LatticeContact> of) const {
-  std::vector<double> friction;
-  for (const LatticeContact& c : of)
-    friction.push_back(c.wall >= 0 ? options.wall_friction : options.friction);
-  return friction;
-}
-
 /// v_p += sum_i N_i (v_i+ - v_i-);  x_p += dt sum_i N_i v_i+.
 void UpdatedLagrangianDynamics::move_points(double dt, double pic_share) {
   for (int g = 0; g < static_cast<int>(grains.size()); ++g) {

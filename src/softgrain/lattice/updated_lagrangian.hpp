@@ -115,9 +115,9 @@ class UpdatedLagrangianDynamics {
   std::vector<Vec<2>> start_velocity_, kicked_velocity_;  // v_i before and after the kick [m/s]
   MassDamping<2> damping_;
 
-  std::vector<GrainEquations> equations_;     // (grains)
-  std::vector<std::vector<Mat<2>>> end_F_;    // (grains) (points) F at the end of the step
-  std::vector<Vec<2>> flight_velocity_;       // v_i- and what gravity and damping change of it [m/s]
+  std::vector<GrainEquations> equations_;      // (grains)
+  std::vector<std::vector<Mat<2>>> end_F_;     // (grains) (points) F at the end of the step
+  std::vector<Vec<2>> flight_velocity_;        // v_i- and what gravity and damping change of it [m/s]
   std::vector<Vec<2>> residual_, correction_;  // [N/m], [m]
   int failed_grain_ = -1;
 };

@@ -183,9 +183,9 @@ TEST_CASE("grains that collide on a lattice in implicit steps keep their momentu
     const double cell = 0.16 * R;
     UpdatedLagrangianOptions options = implicit_options(ShapeFunction::bilinear, contact_on, cell);
     options.friction = 0.4;
-    UpdatedLagrangianDynamics d({disk_of_points(R, {0, 0}, cell, 48),
-                                 disk_of_points(0.8 * R, {1.5 * R, 1.15 * R}, cell, 40)},
-                                {}, make_law(MaterialLaw::neo_hookean, E, nu), rho, options);
+    UpdatedLagrangianDynamics d(
+        {disk_of_points(R, {0, 0}, cell, 48), disk_of_points(0.8 * R, {1.5 * R, 1.15 * R}, cell, 40)}, {},
+        make_law(MaterialLaw::neo_hookean, E, nu), rho, options);
     for (Vec<2>& v : d.grains[1].velocity) v = {-2, -1};
     const double x = momentum(d, 0), y = momentum(d, 1), kinetic = kinetic_energy(d);
     double met = 0;
@@ -204,8 +204,7 @@ TEST_CASE("grains that collide on a lattice in implicit steps keep their momentu
 
 TEST_CASE("the force on a disk of points is the same in explicit and in implicit steps of any length") {
   const double speed = 0.5, approach = 0.05;
-  UpdatedLagrangianOptions options =
-      implicit_options(ShapeFunction::gimp, ContactOn::outline, 0.16 * R);
+  UpdatedLagrangianOptions options = implicit_options(ShapeFunction::gimp, ContactOn::outline, 0.16 * R);
   options.implicit = false;
   const MaterialLaw law = MaterialLaw::neo_hookean;
   const double stable = stable_time_step(make_law(law, E, nu), rho, options.cell);
@@ -229,8 +228,7 @@ TEST_CASE("implicit steps on a lattice have the same bits on one and on three th
   const auto run = [](int count) {
     set_threads(count);
     const double cell = 0.16 * R;
-    UpdatedLagrangianOptions options =
-        implicit_options(ShapeFunction::bilinear, ContactOn::grid_nodes, cell);
+    UpdatedLagrangianOptions options = implicit_options(ShapeFunction::bilinear, ContactOn::grid_nodes, cell);
     options.friction = 0.3;
     UpdatedLagrangianDynamics d({disk_of_points(R, {0, 0}, cell, 48), disk_of_points(R, {2 * R, 0}, cell, 48),
                                  disk_of_points(R, {R, 1.74 * R}, cell, 48)},

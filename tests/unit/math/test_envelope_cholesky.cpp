@@ -15,8 +15,7 @@ namespace {
 struct BothMatrices {
   BothMatrices(int nodes, test::RandomNumbers& random) : dense(Eigen::MatrixXd::Zero(2 * nodes, 2 * nodes)) {
     std::vector<int> first;
-    for (int i = 0; i < nodes; ++i)
-      first.push_back(std::max(0, i - static_cast<int>(random.uniform(0, 12))));
+    for (int i = 0; i < nodes; ++i) first.push_back(std::max(0, i - static_cast<int>(random.uniform(0, 12))));
     rows.reset(first);
     for (int i = 0; i < nodes; ++i)
       for (int j = first[i]; j <= i; ++j) {
@@ -25,8 +24,7 @@ struct BothMatrices {
         if (i == j) block = {{random.uniform(20, 30), block(0, 1), block(0, 1), random.uniform(20, 30)}};
         rows.add(i, j, block);
         for (int a = 0; a < 2; ++a)
-          for (int b = 0; b < 2; ++b)
-            dense(2 * i + a, 2 * j + b) = dense(2 * j + b, 2 * i + a) = block(a, b);
+          for (int b = 0; b < 2; ++b) dense(2 * i + a, 2 * j + b) = dense(2 * j + b, 2 * i + a) = block(a, b);
       }
   }
   EnvelopeCholesky rows;

@@ -132,6 +132,8 @@ std::string checkpoint_page() {
       {"Elastic grains, explicit", fields_of(GrainModel::mpm, symplectic_euler, total_lagrangian)},
       {"Elastic grains, updated Lagrangian",
        fields_of(GrainModel::mpm, symplectic_euler, updated_lagrangian)},
+      {"Elastic grains, updated Lagrangian, implicit",
+       fields_of(GrainModel::mpm, backward_euler, updated_lagrangian)},
       {"Elastic grains in space",
        fields_of(GrainModel::mpm, symplectic_euler, total_lagrangian, MaterialLaw::neo_hookean, 3)}};
   std::string text(checkpoint_begin);

@@ -1,0 +1,101 @@
+"""Packings by the paper's own step, implicit on a lattice: contact on its nodes and on outlines.
+
+    packings_on_a_lattice.py RUN ... -o DIR
+
+Runs of `compaction-mpm` with mpm.formulation = "updated_lagrangian" and mpm.integrator = "implicit". Writes
+DIR/lattice_packings.csv, one row a run, DIR/lattice_curves.csv, and DIR/lattice_packings.png.
+"""
+
+import argparse
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from lattice import AT, BEARS, COLOURS, WINDOW, cell_over_radius
+
+import softgrain
+import softgrain.measure
+from softgrain.reproduce.geometry import coordination_of_load
+from softgrain.reproduce.tables import write_rows
+
+HEADER = ("contact on", "cell / mean R", "friction", "grains", "seed", "Z at a strain of 0.08", "Z = 3 at a strain of", "Phi_0 there",
+          "bottom bears 20 kPa from", "Phi_0 there", "largest energy error / wall work", "steps")
+SHOWN = np.arange(0, 0.301, 0.01)
+
+
+def first(x, y, level):
+    """The first x at which y, linear between its values, is at least `level`; NaN if it never is."""
+    above = np.flatnonzero(y >= level)
+    if above.size == 0:
+        return float("nan")
+    k = above[0]
+    return float(x[0] if k == 0 else np.interp(level, y[k - 1:k + 1], x[k - 1:k + 1]))
+
+
+class Packing:
+    """One run: Z by pairs that bear a tenth of the mean force, over the strain, and the stress on the bottom."""
+
+    def __init__(self, path):
+        run = softgrain.open(path)
+        case, series = run.case, run.series
+        self.key = (case["mpm"]["contact_on"], cell_over_radius(case), case["contact"]["friction"], case["sample"]["grains"])
+        self.seed, self.start = case["sample"]["seed"], case["sample"]["packing_fraction"]
+        self.strain = series["strain"]
+        self.bottom = softgrain.measure.moving_mean(self.strain, series["stress_bottom"], WINDOW)
+        self.z_strain = np.interp(run.times, series["time"], self.strain)
+        self.z = np.array([coordination_of_load(snapshot) for snapshot in run])
+        work = series["wall_work"]
+        late = work > 0.1 * np.nanmax(work)
+        self.error = float(np.max(np.abs(series["energy_error"][late]) / work[late]))
+        self.steps = int(series["step"][-1])
+
+    def row(self):
+        z_3, bears = first(self.z_strain, self.z, 3), first(self.strain, self.bottom, BEARS)
+        phi = [self.start * np.exp(strain) for strain in (z_3, bears)]
+        return (*self.key, self.seed, float(np.interp(AT, self.z_strain, self.z)), z_3, phi[0], bears, phi[1], self.error, self.steps)
+
+    def curve(self):
+        for strain in SHOWN[SHOWN <= self.strain[-1] + 1e-9]:
+            yield (*self.key, self.seed, float(strain), float(np.interp(strain, self.z_strain, self.z)),
+                   float(np.interp(strain, self.strain, self.bottom)))
+
+
+def draw(packings, path):
+    figure, axes = plt.subplots(1, 2, figsize=(7.2, 2.9), layout="constrained")
+    seen = set()
+    for packing in packings:
+        contact_on, cell, friction, grains = packing.key
+        name = f"{contact_on.replace('_', ' ')}, {grains} grains, {cell:.3f} R" + (", mu = 0.5" if friction else "")
+        style = {"color": COLOURS[contact_on], "lw": 0.6 + grains / 60, "ls": "--" if friction else "-",
+                 "alpha": 0.5 if cell > 0.1 else 1, "label": None if name in seen else name}
+        seen.add(name)
+        axes[0].plot(packing.z_strain, packing.z, **style)
+        axes[1].plot(packing.strain, packing.bottom / 1e3, **style)
+    axes[0].plot(0.08, 3, "s", color="#cc79a7", label="the paper")
+    axes[0].set(xlabel="strain", ylabel="Z, of pairs that bear load", xlim=(0, 0.17), ylim=(0, 5))
+    axes[1].set(xlabel="strain", ylabel="stress on the bottom [kPa]", xlim=(0, 0.17), ylim=(0, 200))
+    axes[0].legend(frameon=False, fontsize=5, loc="lower right")
+    figure.savefig(path, dpi=150)
+
+
+def text(row):
+    return [f"{value:.4g}" if isinstance(value, float) else value for value in row]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("runs", nargs="+", metavar="RUN")
+    parser.add_argument("-o", "--output", type=Path, required=True)
+    options = parser.parse_args()
+    packings = sorted((Packing(Path(path)) for path in options.runs), key=lambda packing: (*packing.key, packing.seed))
+    write_rows(options.output / "lattice_packings.csv", HEADER, (text(packing.row()) for packing in packings))
+    write_rows(options.output / "lattice_curves.csv", (*HEADER[:5], "strain", "Z", "stress on the bottom [Pa]"),
+               (text(row) for packing in packings for row in packing.curve()))
+    draw(packings, options.output / "lattice_packings.png")
+
+
+if __name__ == "__main__":
+    main()
