@@ -41,8 +41,4 @@ std::string lattice_cannot(const Case& c) {
   return "";
 }
 
-void set_defaults_of_lattice(Case& c, const std::function<bool(const char* key)>& is_given) {
-  if (is_lattice(c) && !is_given("mpm.integrator")) c.mpm.integrator = Integrator::symplectic_euler;
-}
-
 }  // namespace softgrain

@@ -1,5 +1,4 @@
 #pragma once
-#include <functional>
 #include <string>
 
 #include "softgrain/experiment/case.hpp"
@@ -13,8 +12,5 @@ inline bool is_lattice(const Case& c) {
 
 /// What the case asks of a lattice that it does not have, with a remedy, or "".
 std::string lattice_cannot(const Case& c);
-
-/// Left out, mpm.integrator is explicit on a lattice.
-void set_defaults_of_lattice(Case& the_case, const std::function<bool(const char* key)>& is_given);
 
 }  // namespace softgrain

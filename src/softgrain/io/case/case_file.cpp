@@ -9,7 +9,6 @@
 #include "softgrain/experiment/advice.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/kinds.hpp"
-#include "softgrain/experiment/lattice_case.hpp"
 #include "softgrain/experiment/sample.hpp"
 #include "softgrain/experiment/solid_case.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
@@ -41,9 +40,7 @@ class CaseReader {
       forms_.finish_file();
       for (std::size_t i = 0; i < sets_.size(); ++i) read_set(static_cast<int>(i));
       settle_time_step();
-      const auto is_given = [&](const char* key) { return draft_.origins.contains(key); };
-      set_defaults_of_space(draft_.the_case, is_given);
-      set_defaults_of_lattice(draft_.the_case, is_given);
+      set_dependent_defaults(draft_.the_case, [&](const char* key) { return draft_.origins.contains(key); });
       forms_.finish_stages();
       given_ = draft_.the_case;
       const PlacedLines lines = place_grains(forms_, draft_, sources_);
