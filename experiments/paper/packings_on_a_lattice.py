@@ -2,7 +2,7 @@
 
     packings_on_a_lattice.py RUN ... -o DIR
 
-Runs of `compaction-mpm` with mpm.formulation = "updated_lagrangian" and mpm.integrator = "implicit". Writes
+Runs of `compaction-mpm` with mpm.formulation = "updated_lagrangian" and mpm.lattice_integrator = "implicit". Writes
 DIR/lattice_packings.csv, one row a run, DIR/lattice_curves.csv, and DIR/lattice_packings.png.
 """
 

@@ -87,8 +87,8 @@ class Words(unittest.TestCase):
         tables = {name: table.get("properties", {}) for name, table in schema["properties"].items()}
         self.assertEqual(set(LAWS), set(tables["mpm"]["law"]["enum"]))
         self.assertEqual(set(LOADINGS), set(tables["experiment"]["loading"]["enum"]))
-        of_no_law = {"law", "young_modulus", "poisson_ratio", "cells", "integrator", "formulation", "shape_functions", "contact_on",
-                     "damping", "tolerance", "time_step"}
+        of_no_law = {"law", "young_modulus", "poisson_ratio", "cells", "integrator", "formulation", "lattice_integrator", "shape_functions",
+                     "contact_on", "damping", "tolerance", "time_step"}
         self.assertEqual({key for _, keys, _ in LAWS.values() for key in keys}, set(tables["mpm"]) - of_no_law)
 
     def test_spheres_are_told_as_spheres(self):

@@ -71,8 +71,8 @@ TEST_CASE("what a lattice does not have is refused with the key and what would d
     CHECK(result.err.find("mpm.formulation") != std::string::npos);
     CHECK(result.err.find(remedy) != std::string::npos);
   }
-  const ProcessResult implicit = run_box(
-      directory, {lattice, "mpm.integrator=\"implicit\"", "time.step=\"2 us\"", "loading.max_strain=0.01"});
+  const ProcessResult implicit = run_box(directory, {lattice, "mpm.lattice_integrator=\"implicit\"",
+                                                     "time.step=\"2 us\"", "loading.max_strain=0.01"});
   CAPTURE(implicit.err);
   CHECK(implicit.exit_code == 0);
 }

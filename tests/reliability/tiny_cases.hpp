@@ -181,7 +181,7 @@ inline std::vector<TinyCase> tiny_cases() {
               {"mpm.formulation=\"updated_lagrangian\"", "mpm.contact_on=\"grid_nodes\"", "time.step=0"});
   add_variant("updated-lagrangian-implicit", "compaction-mpm",
               {"mpm.formulation=\"updated_lagrangian\"", "mpm.contact_on=\"grid_nodes\"",
-               "mpm.integrator=\"implicit\"", "time.step=0"});
+               "mpm.lattice_integrator=\"implicit\"", "time.step=0"});
   return cases;
 }
 

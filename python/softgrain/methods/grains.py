@@ -42,7 +42,7 @@ def discretisation_of(case, facts) -> str:
     points = f"{facts.particles} material points" if "kind" in case else each(facts, "material points")
     grid = "a grid that fits the grain" if facts.grains == 1 else "grids that fit the grains"
     if mpm["formulation"] == "updated_lagrangian":
-        integrated = "implicitly" if mpm["integrator"] == "implicit" else "explicitly"
+        integrated = "implicitly" if mpm.get("lattice_integrator") == "implicit" else "explicitly"
         return (f"It was discretised by the updated Lagrangian material point method [nezamabadi2017] with {points}; "
                 f"time was integrated {integrated}.")
     elements = "eight-node finite elements" if facts.in_space else "four-node finite elements with mean dilatation"

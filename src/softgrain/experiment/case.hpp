@@ -85,9 +85,10 @@ struct Case {
     MaterialParameters material;  ///< of the law
     int cells = 16;               ///< along a side of the inner square: 14 cells^2 points in a grain
     Integrator integrator = Integrator::backward_euler;
-    Formulation formulation = Formulation::total_lagrangian;  ///< or updated, explicit, for comparison
-    ShapeFunction shape_functions = ShapeFunction::gimp;      ///< of updated_lagrangian
-    ContactOn contact_on = ContactOn::outline;                ///< of updated_lagrangian
+    Formulation formulation = Formulation::total_lagrangian;       ///< or updated, for comparison
+    Integrator lattice_integrator = Integrator::symplectic_euler;  ///< of updated_lagrangian
+    ShapeFunction shape_functions = ShapeFunction::gimp;           ///< of updated_lagrangian
+    ContactOn contact_on = ContactOn::outline;                     ///< of updated_lagrangian
     double tolerance = 1e-4;  ///< largest last correction of Newton's method, over the mean grain radius
     double damping = 0;       ///< zeta [1/s] of f = -zeta m (v - v_walls)
   } mpm;

@@ -106,7 +106,7 @@ PlacedModel lattice_grains_of(const Case& c) {
                                       .wall_friction = c.contact.wall_friction,
                                       .gravity = gravity_of(c),
                                       .damping = c.mpm.damping,
-                                      .implicit = c.mpm.integrator == Integrator::backward_euler,
+                                      .implicit = c.mpm.lattice_integrator == Integrator::backward_euler,
                                       .tolerance = c.mpm.tolerance});
   const double dt = c.time.step > 0             ? c.time.step
                     : dynamics.options.implicit ? first_time_step(c)
@@ -157,8 +157,11 @@ double longest_time_step(const Case& c) {
   constexpr double no_limit = std::numeric_limits<double>::infinity();
   if (is_bonded(c)) return no_limit;
   if (is_in_space(c)) return longest_solid_step(c);
+  if (is_lattice(c))
+    return c.mpm.lattice_integrator == Integrator::backward_euler
+               ? no_limit
+               : stable_time_step(law_of(c), c.grain.density, cell_of(c), 0.2 * (1 + 1e-9));
   if (c.mpm.integrator != Integrator::symplectic_euler) return no_limit;
-  if (is_lattice(c)) return stable_time_step(law_of(c), c.grain.density, cell_of(c), 0.2 * (1 + 1e-9));
   const auto longest = [](const Case& of_kind) {
     if (is_rigid(of_kind)) return no_limit;
     const double radius = !is_in_a_box(of_kind)           ? of_kind.grain.radius

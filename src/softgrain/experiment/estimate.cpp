@@ -15,7 +15,9 @@
 namespace softgrain {
 namespace {
 
-bool is_implicit(const Case& c) { return c.mpm.integrator == Integrator::backward_euler; }
+bool is_implicit(const Case& c) {
+  return (is_lattice(c) ? c.mpm.lattice_integrator : c.mpm.integrator) == Integrator::backward_euler;
+}
 double grains(const Case& c) { return !is_in_a_box(c) ? 1 : c.sample.grains; }
 double smallest_radius(const Case& c) {
   return !is_in_a_box(c) ? c.grain.radius : c.sample.smallest_diameter / 2;

@@ -1,7 +1,6 @@
 #include "softgrain/experiment/solid_case.hpp"
 
 #include "softgrain/experiment/kinds.hpp"
-#include "softgrain/experiment/lattice_case.hpp"
 #include "softgrain/material/any_law.hpp"
 
 namespace softgrain {
@@ -53,8 +52,7 @@ std::string not_yet_in_space(const Case& c) {
   return is_bonded(c) ? "" : not_yet_solid(c);
 }
 
-void set_dependent_defaults(Case& c, const std::function<bool(const char* key)>& is_given) {
-  if (is_lattice(c) && !is_given("mpm.integrator")) c.mpm.integrator = Integrator::symplectic_euler;
+void set_defaults_of_space(Case& c, const std::function<bool(const char* key)>& is_given) {
   if (!is_in_space(c)) return;
   if (!is_given("mpm.integrator")) c.mpm.integrator = Integrator::symplectic_euler;
   if (!is_given("mpm.cells")) c.mpm.cells = 6;

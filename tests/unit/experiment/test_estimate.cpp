@@ -173,6 +173,5 @@ TEST_CASE("ranks gain what docs/scaling.md says, and no more than they have batc
   }
   CHECK(estimate_on_ranks(c, implicit, 64).useful == 8);
   c.mpm.formulation = Formulation::updated_lagrangian;
-  c.mpm.integrator = Integrator::symplectic_euler;
   CHECK(estimate_on_ranks(c, implicit, 8).useful == 1);
 }

@@ -21,7 +21,6 @@ Case one_grain() {
   c.experiment = {.loading = LoadingPath::diametral, .model = GrainModel::mpm};
   c.mpm.cells = 4;
   c.mpm.formulation = Formulation::updated_lagrangian;
-  c.mpm.integrator = Integrator::symplectic_euler;
   c.contact.wall_friction = 0.2;
   c.loading.wall_velocity = 2;
   c.loading.max_strain = 0.1;
@@ -37,7 +36,6 @@ Case box_of_grains() {
   c.sample.packing_fraction = 0.6;
   c.mpm.cells = 3;
   c.mpm.formulation = Formulation::updated_lagrangian;
-  c.mpm.integrator = Integrator::symplectic_euler;
   c.contact.friction = 0.3;
   c.loading.wall_velocity = 20;
   c.loading.max_strain = 0.3;
@@ -74,7 +72,7 @@ TEST_CASE("an updated-Lagrangian run that goes on from a checkpoint has the bits
     CAPTURE(integrator);
     Case c = given;
     c.mpm.contact_on = contact_on;
-    c.mpm.integrator = integrator;
+    c.mpm.lattice_integrator = integrator;
     const auto whole = create_simulation(c);
     advance(*whole, whole->steps_planned() / 2);
     CHECK(value_of(test::next_row(*whole), "contacts") > 2);
@@ -215,7 +213,7 @@ TEST_CASE("grains that meet on nodes push on each other before their outlines me
 TEST_CASE("an implicit lattice packing accounts for its energy, and gives it back but for what is lost") {
   Case c = box_of_grains();
   c.mpm.contact_on = ContactOn::grid_nodes;
-  c.mpm.integrator = Integrator::backward_euler;
+  c.mpm.lattice_integrator = Integrator::backward_euler;
   c.loading.wall_velocity = 5;
   const auto simulation = create_simulation(c);
   while (!simulation->finished()) simulation->step();
@@ -234,7 +232,7 @@ TEST_CASE("four walls press grains on a lattice, and stages of one's own move th
     CAPTURE(integrator);
     Case c = box_of_grains();
     c.mpm.contact_on = ContactOn::grid_nodes;
-    c.mpm.integrator = integrator;
+    c.mpm.lattice_integrator = integrator;
     c.experiment.loading = LoadingPath::isotropic;
     c.loading.max_strain = 0.25;
     const auto simulation = create_simulation(c);

@@ -40,7 +40,7 @@ class CaseReader {
       forms_.finish_file();
       for (std::size_t i = 0; i < sets_.size(); ++i) read_set(static_cast<int>(i));
       settle_time_step();
-      set_dependent_defaults(draft_.the_case, [&](const char* key) { return draft_.origins.contains(key); });
+      set_defaults_of_space(draft_.the_case, [&](const char* key) { return draft_.origins.contains(key); });
       forms_.finish_stages();
       given_ = draft_.the_case;
       const PlacedLines lines = place_grains(forms_, draft_, sources_);

@@ -91,10 +91,12 @@ std::vector<Key> all_keys() {
 
       KEY(mpm.law, "", its_words(), "law of the material", with_mpm),
       KEY(mpm.cells, "", from_to(2, 200), "cells along a side of the grid's inner square; a grain has 14 cells^2 points and 4 cells vertices, a rigid one the vertices alone; in space: of the inner cube, 32 cells^3 points, 6 where left out", with_outlines),
-      KEY(mpm.integrator, "", its_words(), "backward Euler, or symplectic Euler with lumped masses; in space and on a lattice explicit where it is left out", with_outlines),
+      KEY(mpm.integrator, "", its_words(), "backward Euler, or symplectic Euler with lumped masses; in space explicit, also where it is left out", total_lagrangian),
       KEY(mpm.formulation, "", its_words(),
           "total_lagrangian: on a grid that fits the grain; updated_lagrangian: points move through a lattice that is "
           "reset in each step, for comparison, between walls that no stress moves", with_mpm),
+      KEY(mpm.lattice_integrator, "", its_words(),
+          "of the lattice (updated_lagrangian): symplectic Euler, or backward Euler on its nodes, as in the paper", updated_lagrangian),
       KEY(mpm.shape_functions, "", its_words(), "of the lattice (updated_lagrangian)", updated_lagrangian),
       KEY(mpm.contact_on, "", its_words(),
           "where contact acts; total_lagrangian: on the outline only", updated_lagrangian),

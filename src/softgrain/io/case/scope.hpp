@@ -51,9 +51,11 @@ inline constexpr Scope bpm_between_walls_in_space{"on bpm between walls in space
                                                   }};
 inline constexpr Scope total_lagrangian{"on total_lagrangian mpm", is_total_lagrangian};
 inline constexpr Scope updated_lagrangian{"on updated_lagrangian mpm", is_updated_lagrangian};
-inline constexpr Scope implicit{"on implicit mpm", [](const Case& c) {
-                                  return is_outlined(c) && c.mpm.integrator == Integrator::backward_euler;
-                                }};
+inline bool is_implicit(const Case& c) {
+  const Integrator integrator = is_updated_lagrangian(c) ? c.mpm.lattice_integrator : c.mpm.integrator;
+  return is_outlined(c) && integrator == Integrator::backward_euler;
+}
+inline constexpr Scope implicit{"on implicit mpm", is_implicit};
 inline constexpr Scope with_pairs{"between the grains of a box",
                                   [](const Case& c) { return is_in_a_box(c) && c.sample.grains > 1; }};
 inline bool can_adhere(const Case& c) { return is_total_lagrangian(c) && !is_in_space(c); }

@@ -97,6 +97,7 @@ std::vector<FieldShape> fields_of(GrainModel model, Integrator integrator, Formu
   c.mpm.cells = 2;
   c.mpm.integrator = integrator;
   c.mpm.formulation = formulation;
+  c.mpm.lattice_integrator = integrator;
   StateLister lister;
   create_any_simulation(c)->visit(lister);
   return lister.fields;

@@ -22,6 +22,9 @@ std::vector<std::pair<std::string, std::string>> kinds() {
           {"implicit", "[experiment]\nmodel = 'mpm'\n[mpm]\ncells = 4\n"},
           {"explicit", "[experiment]\nmodel = 'mpm'\n[mpm]\ncells = 4\nintegrator = 'explicit'\n"},
           {"lattice", "[experiment]\nmodel = 'mpm'\n[mpm]\ncells = 4\nformulation = 'updated_lagrangian'\n"},
+          {"implicit lattice",
+           "[experiment]\nmodel = 'mpm'\n[mpm]\ncells = 4\nformulation = 'updated_lagrangian'\n"
+           "lattice_integrator = 'implicit'\n"},
           {"mpm in a box", few + box + "'mpm'\n[mpm]\ncells = 4\n"}};
 }
 
