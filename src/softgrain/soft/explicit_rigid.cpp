@@ -13,6 +13,10 @@ void set_spin(Vec<3, Wide>& spin, int lane, const Vec<3>& value) {
   for (int d = 0; d < 3; ++d) spin[d].set(lane, value[d]);
 }
 
+/// Does it take part by its centre? In the plane none does.
+bool is_ball(const Topology&) { return false; }
+bool is_ball(const SolidTopology& shape) { return shape.ball; }
+
 }  // namespace
 
 /// Where the outlines would be after dt without forces; bodies as contacts find them.
@@ -32,8 +36,15 @@ void ExplicitStep<Dim>::fly_rigid(double dt, const BatchOf<Dim>& batch) {
     for (int d = 0; d < Dim; ++d) body.centre[d] = centre[d][lane];
     body.inverse_mass = 1 / all.mass[lane];
     body.inverse_inertia = 1 / all.inertia[lane];
-    body.radius = batch.radius[lane];
+    body.radius = is_ball(*batch.topology) ? batch.radius[lane] : 0;
   }
+  if constexpr (Dim == 3)
+    if (!batch.topology->ball) {
+      const Mat<3, Wide> inverse_tensor = inverse(inertia_tensor(grains, batch, batch.position));
+      for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
+        for (std::size_t k = 0; k < 9; ++k)
+          bodies_.body[body_of_grain_[batch.grain[lane]]].inverse_tensor.c[k] = inverse_tensor.c[k][lane];
+    }
   set_bodies(batch, twist);
   grains.for_each_vertex(batch, [&](int v, int i, int lane) {
     for (int d = 0; d < Dim; ++d) outline_.position[v][d] = flown[i][d][lane];
@@ -70,17 +81,27 @@ void ExplicitStep<Dim>::drift_rigid(double dt, BatchOf<Dim>& batch, BatchStep& s
     for (std::size_t i = 0; i < damped.size(); ++i)
       damped[i] = damping_.velocity_change(batch.position[i], batch.velocity[i]);
     const RigidTwistOf<Dim> change = rigid_twist(grains, batch, batch.position, damped);
-    step.damping = -0.5 * (all.mass * dot(change.velocity, twice) +
-                           all.of_spins(change.spin, step.twist.spin + twist.spin));
+    const SpinOf<Dim, Wide> twice_spin = step.twist.spin + twist.spin;
+    Wide of_spins = all.of_spins(change.spin, twice_spin);
+    if constexpr (Dim == 3)
+      if (batch.topology->rigid_shape())
+        of_spins = dot(change.spin, inertia_tensor(grains, batch, batch.position) * twice_spin);
+    step.damping = -0.5 * (all.mass * dot(change.velocity, twice) + of_spins);
   }
   grains.for_each_vertex(batch, [&](int v, int, int lane) {
     outline_velocity_[v] =
         bodies_.body[body_of_grain_[batch.grain[lane]]].velocity_at(outline_.on_the_way(v));
   });
-  if constexpr (Dim == 3)
+  if constexpr (Dim == 3) {
+    if (batch.topology->rigid_shape()) {
+      const Vec<3, Wide> spin =
+          turn_freely(grains, batch, dt, Wide(dt) * twist.velocity, twist.spin, batch.position);
+      return set_rigid_twist({twist.velocity, spin}, batch.position, batch.velocity);
+    }
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
       outline_.rolled[grains.outline_end(batch.grain[lane]) - 1] =
           (dt / 2 * batch.radius[lane]) * lane_of(step.twist.spin + twist.spin, lane);
+  }
   place_rigid(batch,
               moved(rigid_pose(batch, batch.position), Wide(dt) * twist.velocity, Wide(dt) * twist.spin),
               batch.position);

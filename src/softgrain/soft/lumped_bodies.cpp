@@ -17,6 +17,26 @@ Vec<3> moment_of(const Vec<3>& arm, const Vec<3>& P) { return cross(arm, P); }
 double answer(const Vec<2>& arm, int i, int j) { return arm[i] * arm[j]; }
 double answer(const Vec<3>& arm, int i, int j) { return (i == j ? dot(arm, arm) : 0) - arm[i] * arm[j]; }
 
+/// (r x)^T I^-1 (r x)
+Mat<3> answer(const Vec<3>& arm, const Mat<3>& inverse_inertia) {
+  Mat<3> r;
+  r(2, 1) = arm[0], r(1, 2) = -arm[0];
+  r(0, 2) = arm[1], r(2, 0) = -arm[1];
+  r(1, 0) = arm[2], r(0, 1) = -arm[2];
+  return transpose(r) * (inverse_inertia * r);
+}
+
+void add_spin(LumpedBodyOf<2>& body, const Vec<2>& arm, const Vec<2>& P) {
+  body.spin += body.inverse_inertia * moment_of(arm, P);
+}
+void add_spin(LumpedBodyOf<3>& body, const Vec<3>& arm, const Vec<3>& P) {
+  const Vec<3> moment = moment_of(arm, P);
+  if (body.radius > 0)
+    body.spin += body.inverse_inertia * moment;
+  else
+    body.spin += body.inverse_tensor * moment;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -48,8 +68,10 @@ typename BodyContacts<Dim>::Row BodyContacts<Dim>::make_row(const ContactOf<Dim>
       side.weight += weight;
       if constexpr (Dim == 2)
         side.arm += weight * perpendicular(outline.on_the_way(vertex) - bodies_.body[body].centre);
-      else
+      else if (bodies_.body[body].radius > 0)
         side.arm = -bodies_.body[body].radius * contact.normal;
+      else
+        side.arm += weight * (outline.on_the_way(vertex) - bodies_.body[body].centre);
       return;
     }
     const auto k = static_cast<std::size_t>(row.vertices++);
@@ -61,10 +83,14 @@ typename BodyContacts<Dim>::Row BodyContacts<Dim>::make_row(const ContactOf<Dim>
   for (const Side& side : row.side) {
     if (side.body < 0) continue;
     const LumpedBodyOf<Dim>& body = bodies_.body[side.body];
-    for (int i = 0; i < Dim; ++i) {
-      C(i, i) += side.weight * side.weight * body.inverse_mass;
+    for (int i = 0; i < Dim; ++i) C(i, i) += side.weight * side.weight * body.inverse_mass;
+    if constexpr (Dim == 3)
+      if (body.radius == 0) {
+        C += answer(side.arm, body.inverse_tensor);
+        continue;
+      }
+    for (int i = 0; i < Dim; ++i)
       for (int j = 0; j < Dim; ++j) C(i, j) += answer(side.arm, i, j) * body.inverse_inertia;
-    }
   }
   std::array<Vec<Dim>, Dim> axis{row.normal};
   for (std::size_t k = 1; k < Dim; ++k) axis[k] = tangents(row.normal)[k - 1];
@@ -107,7 +133,7 @@ void BodyContacts<Dim>::apply_impulse(int contact, const Vec<Dim>& dp) {
     if (side.body >= 0) {
       LumpedBodyOf<Dim>& body = bodies_.body[side.body];
       body.velocity += (side.weight * body.inverse_mass) * P;
-      body.spin += body.inverse_inertia * moment_of(side.arm, P);
+      add_spin(body, side.arm, P);
     }
 }
 

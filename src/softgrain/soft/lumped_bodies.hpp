@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "softgrain/contact/nlgs.hpp"
+#include "softgrain/math/tensor.hpp"
 #include "softgrain/soft/contact_of.hpp"
 
 namespace softgrain {
@@ -20,14 +21,15 @@ struct LumpedBodyOf {
   Vec<Dim> velocity;   ///< [m/s]
   SpinOf<Dim> spin{};  ///< [1/s]
   double inverse_mass = 0, inverse_inertia = 0;  ///< [m/kg], [m/(kg m^2)]; in space without "m/"
-  double radius = 0;                             ///< of a sphere [m]
+  double radius = 0;                             ///< of a sphere, which takes part by its centre [m]
+  Mat<3> inverse_tensor{};  ///< I^-1 of a body in space that is no sphere, whose radius is 0 [1/(kg m^2)]
 
-  /// At the place x, in space at the centre.
+  /// At the place x, of a sphere at its centre.
   Vec<Dim> velocity_at(const Vec<Dim>& x) const {
     if constexpr (Dim == 2)
       return velocity + spin * perpendicular(x - centre);
     else
-      return velocity;
+      return radius > 0 ? velocity : velocity + cross(spin, x - centre);
   }
 };
 using LumpedBody = LumpedBodyOf<2>;
@@ -46,9 +48,9 @@ using LumpedBodies = LumpedBodiesOf<2>;
 /// contact has on a body, and r the way from x_c to where it acts,
 ///   u = sum over soft vertices of w_k v_k + sum over bodies of (w v_c + omega x r),
 ///   W = sum w_k^2/m_k 1 + sum (w^2/m 1 + (r x)^T (r x)/I).
-/// In the plane r = sum_k w_k (x_k - x_c). A sphere takes part by its centre, and r = -R n on either side.
-/// A body meets contacts all around it: they are swept one after the other, so that any number of threads
-/// gives the same bits.
+/// r = sum_k w_k (x_k - x_c). A sphere takes part by its centre, and r = -R n on either side. In space I^-1
+/// of other bodies is a tensor, and W has (r x)^T I^-1 (r x). A body meets contacts all around it: they are
+/// swept one after the other, so that any number of threads gives the same bits.
 template <int Dim>
 class BodyContacts {
  public:

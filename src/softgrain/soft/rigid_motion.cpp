@@ -114,10 +114,40 @@ RigidTwistOf<Dim> rigid_twist(const GrainsOf<Dim>& grains, const BatchOf<Dim>& b
     momentum += p;
     angular += cross_of(x[i] - centre, p);
   }
-  if constexpr (Dim == 2)
+  if constexpr (Dim == 2) {
     return {(1.0 / all.mass) * momentum, angular / all.inertia};
-  else
+  } else {
+    if (batch.topology->rigid_shape())
+      return {(1.0 / all.mass) * momentum, inverse(inertia_tensor(grains, batch, x)) * angular};
     return {(1.0 / all.mass) * momentum, (1.0 / all.inertia) * angular};
+  }
+}
+
+Mat<3, Wide> inertia_tensor(const GrainsOf<3>& grains, const BatchOf<3>& batch, const WidePlaces<3>& x) {
+  Mat<3, Wide> I{};
+  for (int k = 0; k < batch.topology->grid.nodes(); ++k) {
+    const Vec<3, Wide> r = x[k] - x.back();
+    const Wide m = grains.node_mass(batch, k), square = dot(r, r);
+    for (int i = 0; i < 3; ++i) {
+      I(i, i) += m * square;
+      for (int j = 0; j < 3; ++j) I(i, j) -= m * r[i] * r[j];
+    }
+  }
+  return I;
+}
+
+Vec<3, Wide> turn_freely(const GrainsOf<3>& grains, const BatchOf<3>& batch, double dt,
+                         const Vec<3, Wide>& way, const Vec<3, Wide>& spin, WidePlaces<3>& x) {
+  constexpr int passes = 6;  // each leaves (dt omega)^2 or less of the error
+  const RigidPoseOf<3> pose = rigid_pose(batch, x);
+  const Vec<3, Wide> L = inertia_tensor(grains, batch, x) * spin;
+  Vec<3, Wide> middle = spin;
+  for (int pass = 0; pass < passes; ++pass) {
+    place_rigid(batch, moved(pose, {}, Wide(dt / 2) * middle), x);
+    middle = inverse(inertia_tensor(grains, batch, x)) * L;
+  }
+  place_rigid(batch, moved(pose, way, Wide(dt) * middle), x);
+  return inverse(inertia_tensor(grains, batch, x)) * L;
 }
 
 void set_rigid_twist(const RigidTwist& twist, const WideVectors& x, WideVectors& v) {

@@ -55,7 +55,7 @@ RigidTwistOf<Dim> rigid_twist(const GrainsOf<Dim>& grains, const BatchOf<Dim>& b
 void set_rigid_twist(const RigidTwist& twist, const WideVectors& x, WideVectors& v);
 void set_rigid_twist(const RigidTwistOf<3>& twist, const WidePlaces<3>& x, WidePlaces<3>& v);
 
-/// m [kg/m] and I [kg m^2/m] of the grains of a batch; in space without "/m", of bodies with one I.
+/// m [kg/m] and I [kg m^2/m] of the grains of a batch; in space without "/m", of balls.
 template <int Dim>
 struct RigidMassOf {
   Wide mass, inertia;
@@ -75,5 +75,14 @@ using RigidMass = RigidMassOf<2>;
 
 template <int Dim>
 RigidMassOf<Dim> rigid_mass(const GrainsOf<Dim>& grains, const BatchOf<Dim>& batch);
+
+/// I = sum m_i (r . r 1 - r (x) r) about the centre, of nodes at x [kg m^2]: of any shape.
+Mat<3, Wide> inertia_tensor(const GrainsOf<3>& grains, const BatchOf<3>& batch, const WidePlaces<3>& x);
+
+/// A free turn of grains of any shape over dt: their angular momentum stays, L = I omega,
+///   Q+ = exp(dt omega_m) Q,  omega_m = I(exp(dt/2 omega_m) Q)^-1 L,  omega+ = I(Q+)^-1 L.
+/// Places the nodes, moved by `way` besides, and returns omega+.
+Vec<3, Wide> turn_freely(const GrainsOf<3>& grains, const BatchOf<3>& batch, double dt,
+                         const Vec<3, Wide>& way, const Vec<3, Wide>& spin, WidePlaces<3>& x);
 
 }  // namespace softgrain

@@ -141,7 +141,9 @@ double SoftGrains::radius_of_area(int grain) const {
 
 template <>
 double GrainsOf<3>::radius_of_area(int grain) const {
-  return radius(grain);
+  const SolidTopology& shape = topology(grain);
+  return shape.rigid_shape() ? radius(grain) * std::cbrt(shape.volume / (4 * std::numbers::pi / 3))
+                             : radius(grain);
 }
 
 template <>

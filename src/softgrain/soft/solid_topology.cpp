@@ -87,7 +87,9 @@ SolidTopology rigid_ball(int n) {
   for (auto& quad : outline.quad)
     for (int& node : quad) node -= ball.outline_begin;
   constexpr double volume = 4 * std::numbers::pi / 3;
-  return {std::move(outline), volume, 0.6 * volume};
+  SolidTopology shape(std::move(outline), volume, 0.6 * volume);
+  shape.ball = true;
+  return shape;
 }
 
 }  // namespace softgrain

@@ -40,7 +40,10 @@ struct SolidTopology {
   /// (outline vertices) the quads round each; -1 behind the third of a vertex of valence 3
   std::vector<std::array<int, 4>> quads_round;
   double patch_fullness = 1;  ///< volume of the body over that within the smooth outline
+  bool ball = false;          ///< of a rigid grain: it is met at the true sphere, by its centre
   bool rigid() const { return grid.cell.empty(); }
+  /// A rigid grain of any shape, which is met at its outline.
+  bool rigid_shape() const { return rigid() && !ball; }
 };
 
 /// A rigid sphere of unit radius, drawn by the outline of ball_grid(n). Raises UsageError for n < 2.

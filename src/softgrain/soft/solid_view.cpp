@@ -105,7 +105,7 @@ std::vector<ContactPointOf<3>> contact_points(const SoftViewOf<3>& view) {
     const SurfaceContact& contact = view.contacts[c];
     if (!(view.impulse[c][0] > 0)) continue;
     Vec<3> place = x[contact.vertex];
-    if (const int g = grains.grain_of_vertex(contact.vertex); grains.topology(g).rigid())
+    if (const int g = grains.grain_of_vertex(contact.vertex); grains.topology(g).ball)
       place -= grains.radius(g) * contact.normal;
     if (contact.wall >= 0 && !contact.is_vertex_at_wall()) {
       place = {};

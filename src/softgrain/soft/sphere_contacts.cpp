@@ -26,6 +26,10 @@ Points points_of(const SolidGrains& grains, const OutlineStateOf<3>& state) {
   for (int g = 0; g < grains.size(); ++g) {
     const SolidTopology& shape = grains.topology(g);
     const int begin = grains.outline_begin(g), end = grains.outline_end(g);
+    if (shape.rigid_shape()) {  // it is looked for among the patches
+      patch += static_cast<int>(shape.patches.size());
+      continue;
+    }
     for (int v = shape.rigid() ? end - 1 : begin; v < end; ++v) {
       if (shape.rigid()) points.sphere.push_back(static_cast<int>(points.position.size()));
       points.position.push_back(state.position[v]);

@@ -77,26 +77,87 @@ std::vector<FacingPatch> patches_facing(const Surfaces& surfaces, int grain, int
   return facing;
 }
 
+/// Beside an edge of a grain the nearest place is on the edge for both of its faces: a point that is outside
+/// one of them meets the edge along the way to it, one that is inside both the face that it is less deep in.
+class FacesOfEdge {
+ public:
+  void add(const Vec<3>& d, const Vec<3>& normal) { faces_.push_back({d, normal}); }
+  /// way: to the nearest place of all [m]; size: of a patch [m]
+  void set_normal(const Vec<3>& way, double size, SurfaceContact& contact) const {
+    constexpr double near = 1e-6, flat = 0.97;
+    double highest = -std::numeric_limits<double>::infinity(), least_cosine = 1;
+    Vec<3> normal = contact.normal;
+    for (const Face& face : faces_) {
+      if (norm(face.d - way) > near * size) continue;  // its own nearest place lies elsewhere
+      least_cosine = std::min(least_cosine, dot(face.normal, contact.normal));
+      if (const double height = dot(face.d, face.normal); height > highest)
+        highest = height, normal = face.normal;
+    }
+    if (least_cosine > flat) return;
+    const double distance = norm(way);
+    const bool beside = highest > 0 && distance > near * size;
+    contact.normal = beside ? (1 / distance) * way : normal;
+    contact.gap = beside ? distance : highest;
+  }
+
+ private:
+  struct Face {
+    Vec<3> d, normal;
+  };
+  std::vector<Face> faces_;
+};
+
 /// Where the point `vertex` faces a grain, of which the vertex `nearest` is nearest to it.
 SurfaceContact contact_with_patch(const Surfaces& surfaces, int vertex, int grain, int nearest) {
   SurfaceContact contact{.point = vertex, .vertex = vertex};
   set_image(contact, nearest, surfaces.state);
   const Vec<3> x = surfaces.state.position[vertex] - contact.image;
+  const bool has_edges = surfaces.grains.topology(grain).rigid_shape();
+  FacesOfEdge edge;
+  Vec<3> way;  // to the nearest place
+  bool inside = false;
   double least = std::numeric_limits<double>::infinity();
   for (const FacingPatch& facing : patches_facing(surfaces, grain, nearest, x)) {
     const SurfacePatch patch = surfaces.patch(grain, facing.patch);
     const auto found = patch.nearest(x, std::abs(facing.u - 0.3), std::abs(facing.v - 0.3));
     const auto place = patch.at(found.u, found.v);
     const Vec<3> d = x - place.place;
+    if (has_edges && !found.inside) edge.add(d, place.normal());
     if (dot(d, d) >= least) continue;
     least = dot(d, d);
+    way = d, inside = found.inside;
     contact.normal = place.normal();
     contact.gap = dot(d, contact.normal);
     set_master(contact, surfaces.grains.topology(grain).patches[facing.patch],
                surfaces.grains.outline_begin(grain), found.u, found.v);
     if (found.inside) break;
   }
+  if (has_edges && !inside) edge.set_normal(way, surfaces.reach, contact);
   return contact;
+}
+
+/// Those of a rigid sphere, by its centre, with rigid grains of other shapes.
+void add_contacts_of_sphere(const Surfaces& surfaces, double margin, int centre,
+                            std::vector<SurfaceContact>& contacts) {
+  const SolidGrains& grains = surfaces.grains;
+  const double R = grains.radius(grains.grain_of_vertex(centre));
+  const OutlineStateOf<3>& state = surfaces.state;
+  const auto way = [&](int vertex) {
+    const Vec<3> d = state.position[vertex] - state.position[centre];
+    return state.cell.any() ? d + state.cell.shift(state.cell.nearest(d)) : d;
+  };
+  for (int g = 0; g < grains.size(); ++g) {
+    if (!grains.topology(g).rigid_shape()) continue;
+    const int end = grains.outline_end(g) - 1;  // its centre
+    if (norm(way(end)) > R + grains.radius(g) + margin) continue;
+    int nearest = grains.outline_begin(g);
+    for (int v = nearest; v < end; ++v)
+      if (norm(way(v)) < norm(way(nearest))) nearest = v;
+    SurfaceContact contact = contact_with_patch(surfaces, centre, g, nearest);
+    contact.offset = R;
+    contact.gap -= R;
+    if (contact.gap < margin) contacts.push_back(contact);
+  }
 }
 
 /// The vertex of each other grain nearest to vertex v, within the reach; sorted by grain.
@@ -110,7 +171,7 @@ void find_nearest(const Surfaces& surfaces, const ImagedGrid& grid, double reach
   const int grain = surfaces.grains.grain_of_vertex(v);
   grid.for_each_neighbour(v, [&](int w, const Vec<3>& d) {
     const int other = surfaces.grains.grain_of_vertex(w);
-    if (other == grain || surfaces.grains.topology(other).rigid()) return;
+    if (other == grain || surfaces.grains.topology(other).ball) return;
     const double distance_squared = dot(d, d);
     if (distance_squared > reach * reach) return;
     const auto found =
@@ -127,7 +188,11 @@ void find_nearest(const Surfaces& surfaces, const ImagedGrid& grid, double reach
 /// Those of one vertex.
 void add_contacts_of_vertex(const Surfaces& surfaces, const ImagedGrid& grid, double margin, int v,
                             std::vector<NearestVertex>& near, std::vector<SurfaceContact>& contacts) {
-  if (surfaces.grains.topology(surfaces.grains.grain_of_vertex(v)).rigid()) return;
+  const int own = surfaces.grains.grain_of_vertex(v);
+  const SolidTopology& shape = surfaces.grains.topology(own);
+  const bool is_centre = shape.rigid() && v + 1 == surfaces.grains.outline_end(own);
+  if (shape.ball && is_centre) return add_contacts_of_sphere(surfaces, margin, v, contacts);
+  if (shape.ball || is_centre) return;
   add_wall_contacts(surfaces.state, {.point = v, .vertex = v}, margin, contacts);
   find_nearest(surfaces, grid, surfaces.reach + margin, v, near);
   for (const NearestVertex& nearest : near) {
@@ -141,7 +206,7 @@ void add_contacts_of_patch(const Surfaces& surfaces, double margin, int patch,
                            std::vector<SurfaceContact>& contacts) {
   const auto next = std::upper_bound(surfaces.patch_begin.begin(), surfaces.patch_begin.end(), patch);
   const int grain = static_cast<int>(next - surfaces.patch_begin.begin()) - 1;
-  if (surfaces.grains.topology(grain).rigid()) return;
+  if (surfaces.grains.topology(grain).ball) return;
   const PatchNet& net = surfaces.grains.topology(grain).patches[patch - surfaces.patch_begin[grain]];
   const int begin = surfaces.grains.outline_begin(grain);
   SurfaceContact contact{.point = surfaces.grains.outline_size() + patch, .vertex = begin + net.vertex[5]};
@@ -181,7 +246,7 @@ double offset_of(const SurfaceContact& contact, const SolidGrains& grains) {
   double sum = 0;
   const auto add = [&](int vertex) {
     const int grain = grains.grain_of_vertex(vertex);
-    if (grains.topology(grain).rigid()) sum += grains.radius(grain);
+    if (grains.topology(grain).ball) sum += grains.radius(grain);
   };
   add(contact.vertex);
   if (contact.wall < 0) add(contact.master[5]);

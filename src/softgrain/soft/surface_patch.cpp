@@ -74,6 +74,19 @@ PatchNet net_of(Quad quad, const QuadNeighbours& neighbours) {
 
 constexpr std::size_t slot(std::size_t i, std::size_t j) { return 4 * i + j; }
 
+/// Gives the weight of a row beyond a sharp side to the two rows before it.
+void go_straight_on(const PatchNet& net, std::array<double, 4>& of_u, std::array<double, 4>& of_v) {
+  const auto fold = [](std::array<double, 4>& w, std::size_t beyond, std::size_t edge, std::size_t inside) {
+    w[edge] += 2 * w[beyond];
+    w[inside] -= w[beyond];
+    w[beyond] = 0;
+  };
+  if ((net.sharp & PatchNet::low_u) != 0) fold(of_u, 0, 1, 2);
+  if ((net.sharp & PatchNet::high_u) != 0) fold(of_u, 3, 2, 1);
+  if ((net.sharp & PatchNet::low_v) != 0) fold(of_v, 0, 1, 2);
+  if ((net.sharp & PatchNet::high_v) != 0) fold(of_v, 3, 2, 1);
+}
+
 /// Gives the weights of the ghosts P_01, P_10 and P_00 to the vertices of which they are made.
 void spread_ghosts(std::array<double, 16>& w) {
   const double w_00 = w[slot(0, 0)], w_01 = w[slot(0, 1)] + w_00, w_10 = w[slot(1, 0)] + w_00;
@@ -95,7 +108,8 @@ std::vector<PatchNet> patch_nets(std::span<const Quad> quads, std::span<const Qu
 }
 
 std::array<double, 16> patch_weights(const PatchNet& net, double u, double v) {
-  const auto of_u = curve_weights(u), of_v = curve_weights(v);
+  auto of_u = curve_weights(u), of_v = curve_weights(v);
+  if (net.sharp != 0) go_straight_on(net, of_u, of_v);
   std::array<double, 16> weights;
   for (std::size_t k = 0; k < 16; ++k) weights[k] = of_u[k / 4] * of_v[k % 4];
   if (net.ghosts) spread_ghosts(weights);
@@ -104,12 +118,32 @@ std::array<double, 16> patch_weights(const PatchNet& net, double u, double v) {
 
 SurfacePatch::SurfacePatch(const PatchNet& net, const Vec<3>* position) {
   for (std::size_t k = 0; k < 16; ++k) net_[k] = position[net.vertex[k]];
-  if (!net.ghosts) return;
+  if (net.ghosts) put_ghosts();
+  if (net.sharp != 0) go_straight_on(net);
+}
+
+void SurfacePatch::put_ghosts() {
   const Vec<3> C = net_[slot(0, 0)], &P_11 = net_[slot(1, 1)], &P_21 = net_[slot(2, 1)],
                &P_12 = net_[slot(1, 2)];
   net_[slot(0, 1)] = 0.75 * (P_12 + C) - 0.5 * P_11;
   net_[slot(1, 0)] = 0.75 * (P_21 + C) - 0.5 * P_11;
   net_[slot(0, 0)] = net_[slot(0, 1)] + net_[slot(1, 0)] - P_21 - P_12 + net_[slot(2, 2)];
+}
+
+/// Rows beyond sharp sides.
+void SurfacePatch::go_straight_on(const PatchNet& net) {
+  const auto row = [&](std::size_t beyond, std::size_t edge, std::size_t inside) {
+    for (std::size_t j = 0; j < 4; ++j)
+      net_[slot(beyond, j)] = 2 * net_[slot(edge, j)] - net_[slot(inside, j)];
+  };
+  const auto column = [&](std::size_t beyond, std::size_t edge, std::size_t inside) {
+    for (std::size_t i = 0; i < 4; ++i)
+      net_[slot(i, beyond)] = 2 * net_[slot(i, edge)] - net_[slot(i, inside)];
+  };
+  if ((net.sharp & PatchNet::low_u) != 0) row(0, 1, 2);
+  if ((net.sharp & PatchNet::high_u) != 0) row(3, 2, 1);
+  if ((net.sharp & PatchNet::low_v) != 0) column(0, 1, 2);
+  if ((net.sharp & PatchNet::high_v) != 0) column(3, 2, 1);
 }
 
 Vec<3> SurfacePatch::Point::normal() const {

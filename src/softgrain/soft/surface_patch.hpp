@@ -14,10 +14,16 @@ namespace softgrain {
 /// P_11, P_21, P_22, P_12 the quad, counter-clockwise. At a vertex of valence 3, which turns into P_11, the
 /// net lacks P_01, P_10 and P_00. With the vertex' third neighbour C
 ///   P_01 = 3/4 (P_12 + C) - 1/2 P_11,  P_10 = 3/4 (P_21 + C) - 1/2 P_11,
-/// and P_00 such that the net's twist changes as little as it can. All is linear in the vertices.
+/// and P_00 such that the net's twist changes as little as it can. Along a side that is sharp the row of the
+/// net beyond it goes straight on, P_0j = 2 P_1j - P_2j: flat faces stay flat up to their edges. All is
+/// linear in the vertices.
 struct PatchNet {
+  /// The sides u = 0, u = 1, v = 0 and v = 1
+  enum Side : unsigned { low_u = 1, high_u = 2, low_v = 4, high_v = 8 };
+
   std::array<int, 16> vertex{};  ///< P_ij at 4 i + j; with ghosts C at 0 and P_11 at 1 and 4
   bool ghosts = false;           ///< P_11 has valence 3
+  unsigned sharp = 0;            ///< sides along which the outline has an edge
 };
 
 /// Nets of all quads of a closed outline, whose vertices have valence 4 or 3, two of valence 3 never in one
@@ -49,6 +55,9 @@ class SurfacePatch {
   Nearest nearest(const Vec<3>& x, double u, double v) const;
 
  private:
+  void put_ghosts();
+  void go_straight_on(const PatchNet& net);
+
   std::array<Vec<3>, 16> net_;
 };
 
