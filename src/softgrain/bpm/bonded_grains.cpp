@@ -42,23 +42,43 @@ void refuse_overlaps(const StepReport& report) {
 
 }  // namespace
 
+FrictionRule FrictionOfPrimaries::rule(const std::vector<int>& grain_of,
+                                       const std::vector<int>& kind_of_grain) const {
+  const auto kinds = static_cast<int>(inside.size());
+  std::vector<int> kind;  // of each primary
+  for (const int g : grain_of) kind.push_back(kind_of_grain[g]);
+  return [mu = friction_by_kinds(kinds, between, wall, named), inside_of = inside, grain_of,
+          kind = std::move(kind)](int a, int b) {
+    if (b >= static_cast<int>(grain_of.size())) return mu.of(kind[a], PairFriction::wall);
+    return grain_of[a] == grain_of[b] ? inside_of[kind[a]] : mu.of(kind[a], kind[b]);
+  };
+}
+
 template <int Dim>
 BondedGrainsOf<Dim>::BondedGrainsOf(BondedGrainsSetupOf<Dim> setup)
     : grain_radius_(std::move(setup.grain_radius)),
+      kind_(std::move(setup.kind)),
       density_(setup.density),
       sigma_I_(setup.sigma_I),
       gravity_(setup.gravity),
       friction_(setup.friction),
       attraction_(std::move(setup.laws)),
+      adhesion_(kind_, kinds(), setup.adhesion),
       dynamics_(std::move(setup.particles), {}, setup.options, setup.skin),
       most_sweeps_(setup.options.solver.max_sweeps) {
-  dynamics_.set_friction(friction_.rule(dynamics_.particles.grain));
+  dynamics_.set_friction(friction_.rule(dynamics_.particles.grain, kind_));
   dynamics_.share_grains();
+  dynamics_.reference.reach = adhesion_.range();
   set_reference(dynamics_.reference, dynamics_.particles);
   dynamics_.rebuild_contacts();
   attraction_.update(dynamics_.particles, dynamics_.reference);
   work_.height_start = energy_of_height();
-  work_.energy_start = attraction_.energy(dynamics_.particles) + work_.height_start;
+  work_.energy_start = energy_of_attraction() + work_.height_start;
+}
+
+template <int Dim>
+int BondedGrainsOf<Dim>::kinds() const {
+  return static_cast<int>(friction_.inside.size());
 }
 
 template <int Dim>
@@ -70,11 +90,13 @@ StepReport BondedGrainsOf<Dim>::step(Box<Dim>& box, double dt) {
   dynamics_.particles.cell = box.cell;
   if (keeps_problem_) velocity_start_ = dynamics_.particles.velocity;
   dynamics_.options.solver.max_sweeps = most_sweeps_ * (impulse_time_ == 0 ? first_step_factor : 1);
+  double power_of_cell = 0;
   StepReport report = dynamics_.step(
       [&](const RigidParticles<Dim>& particles, std::span<Vec<Dim>> force) {
         const Shares& shares = dynamics_.reference.shares;
         attraction_.update(particles, dynamics_.reference, shares);
         attraction_.add_forces(particles, force, shares);
+        power_of_cell = adhesion_.add_forces(particles, dynamics_.contacts, force);
         if (gravity_ == Vec<Dim>{}) return;
         for (int i = 0; i < particles.size(); ++i) force[i] += particles.mass[i] * gravity_;
       },
@@ -88,6 +110,7 @@ StepReport BondedGrainsOf<Dim>::step(Box<Dim>& box, double dt) {
   box.presses = dynamics_.particles.presses;
   box.cell = dynamics_.particles.cell;
   add_work();
+  work_.walls += dt * power_of_cell;
   return report;
 }
 
@@ -163,7 +186,7 @@ std::pair<double, double> BondedGrainsOf<Dim>::reach() const {
 template <int Dim>
 Energies BondedGrainsOf<Dim>::energies() const {
   const double kinetic = kinetic_energy(dynamics_.particles);  // at rest before the first step
-  const double attraction = attraction_.energy(dynamics_.particles);
+  const double attraction = energy_of_attraction();
   return {.kinetic = kinetic,
           .stored = attraction,
           .wall_work = work_.walls,
@@ -172,6 +195,12 @@ Energies BondedGrainsOf<Dim>::energies() const {
           .friction = work_.friction,
           .error = work_.walls - kinetic - (attraction + energy_of_height() - work_.energy_start) -
                    work_.dissipation};
+}
+
+template <int Dim>
+double BondedGrainsOf<Dim>::energy_of_attraction() const {
+  const double inside = attraction_.energy(dynamics_.particles);
+  return adhesion_.any() ? inside + adhesion_.energy(dynamics_.particles, dynamics_.contacts) : inside;
 }
 
 template <int Dim>
@@ -208,10 +237,25 @@ Numbers BondedGrainsOf<Dim>::numbers(const Box<Dim>& box) const {
                   {"clusters", clusters()},
                   {"attraction_energy", attraction_.energy(particles)},
                   {"dissipation_rearrangement", work_.dissipation - work_.between}};
+  if (adhesion_.any()) {
+    numbers.emplace_back("adhesion_energy", adhesion_.energy(particles, dynamics_.contacts));
+    numbers.emplace_back("attraction_ratio", attraction_ratio());
+  }
   if (box.closed()) numbers.emplace_back("solid_fraction", solid_fraction(box));
   if (!(gravity_ == Vec<Dim>{}))
     numbers.emplace_back("gravity_work", work_.height_start - energy_of_height());
   return numbers;
+}
+
+/// Of the contacts between grains and with walls.
+template <int Dim>
+double BondedGrainsOf<Dim>::attraction_ratio() const {
+  double pulls = 0, pushes = 0;
+  for (int c = dynamics_.contacts.blocks.back().begin(); c < dynamics_.contacts.size(); ++c) {
+    pulls += impulse_time_ * adhesion_.force(dynamics_.particles, dynamics_.contacts, c);
+    pushes += dynamics_.contacts.impulse[c][0];
+  }
+  return pushes > 0 ? pulls / pushes : 0;
 }
 
 template <int Dim>

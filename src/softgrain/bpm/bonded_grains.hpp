@@ -7,6 +7,8 @@
 
 #include "softgrain/bpm/attraction_forces.hpp"
 #include "softgrain/bpm/bonded_view.hpp"
+#include "softgrain/bpm/surface_attraction.hpp"
+#include "softgrain/contact/pair_friction.hpp"
 #include "softgrain/model/model.hpp"
 #include "softgrain/rigid/step.hpp"
 
@@ -14,16 +16,12 @@ namespace softgrain {
 
 /// Coefficients of friction mu: between primaries of one grain, of two, and against walls.
 struct FrictionOfPrimaries {
-  double inside = 0, between = 0, wall = 0;
+  std::vector<double> inside{0};  ///< of each kind
+  double between = 0, wall = 0;
+  std::vector<PairFriction> named{};  ///< of pairs of kinds, instead of those two
 
-  /// Of primaries whose grains are these.
-  FrictionRule rule(const std::vector<int>& grain_of) const {
-    return [friction = *this, grain_of](int a, int b) {
-      if (b >= static_cast<int>(grain_of.size())) return friction.wall;
-      return grain_of[a] == grain_of[b] ? friction.inside : friction.between;
-    };
-  }
-  friend bool operator==(const FrictionOfPrimaries&, const FrictionOfPrimaries&) = default;
+  /// Of primaries whose grains are these, grains of these kinds.
+  FrictionRule rule(const std::vector<int>& grain_of, const std::vector<int>& kind_of_grain) const;
 };
 
 /// Grains of bonded primaries as they are placed.
@@ -32,11 +30,13 @@ struct BondedGrainsSetupOf {
   RigidParticles<Dim> particles;     ///< grain after grain
   std::vector<double> grain_radius;  ///< of the undeformed grains [m]
   std::vector<Attraction> laws;      ///< of each grain
+  std::vector<int> kind;             ///< of each grain
   FrictionOfPrimaries friction;
+  std::vector<PairAdhesion> adhesion{};  ///< between grains, and at walls, of pairs of kinds
   RigidStepOptions options;
   double skin = 0;     ///< of the lists of pairs [m]
-  double density = 0;  ///< of the grains [kg/m^3]
-  double sigma_I = 0;  ///< F0/<a0>, in space F0/<a0>^2, the same in all grains [Pa]
+  double density = 0;  ///< of the grains, the largest [kg/m^3]
+  double sigma_I = 0;  ///< F0/<a0>, in space F0/<a0>^2, of all grains; of several kinds the least [Pa]
   Vec<Dim> gravity{};  ///< [m/s^2]
 };
 using BondedGrainsSetup = BondedGrainsSetupOf<2>;
@@ -68,7 +68,7 @@ class BondedGrainsOf final : public ModelOf<Dim> {
   BodiesOf<Dim> bodies() const override;
   /// Contacts between grains, and with walls.
   std::vector<ContactPointOf<Dim>> contacts() const override {
-    return contact_points(dynamics_, impulse_time_);
+    return contact_points(dynamics_, adhesion_, impulse_time_);
   }
   OutlinesOf<Dim> outlines() const override { return outlines_of(dynamics_); }
   std::pair<double, double> extent(int axis) const override;
@@ -92,15 +92,21 @@ class BondedGrainsOf final : public ModelOf<Dim> {
     double height_start = 0;           // of them that of gravity
   };
   void add_work();
+  double energy_of_attraction() const;               // inside grains and between them
   double solid_fraction(const Box<Dim>& box) const;  // of the box that primaries fill
   int clusters() const;
+  double attraction_ratio() const;
   double energy_of_height() const;  // -sum m g . x
 
+  int kinds() const;
+
   std::vector<double> grain_radius_;
+  std::vector<int> kind_;  // of each grain
   double density_ = 0, sigma_I_ = 0;
   Vec<Dim> gravity_{};
   FrictionOfPrimaries friction_;
   AttractionForcesOf<Dim> attraction_;
+  SurfaceAttraction<Dim> adhesion_;
   RigidDynamics<Dim> dynamics_;
   int most_sweeps_ = 0;      // of a step but the first
   double impulse_time_ = 0;  // the step over which impulses acted; 0: none was made [s]

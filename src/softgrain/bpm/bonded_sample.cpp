@@ -115,15 +115,18 @@ std::vector<AggregateOf<Dim>> prepare_library(const AggregateLibrary& c) {
 }
 
 template <int Dim>
-BpmSampleOf<Dim> fill_box(const BoxSampleOf<Dim>& box, const std::vector<AggregateOf<Dim>>& library,
-                          const AggregateLibrary& c) {
+BpmSampleOf<Dim> fill_box(const BoxSampleOf<Dim>& box,
+                          const std::vector<std::vector<AggregateOf<Dim>>>& library,
+                          const std::vector<AggregateLibrary>& options) {
   BpmSampleOf<Dim> sample;
   std::vector<Vec<Dim>> position;
   std::vector<double> radius, mass;
   std::vector<int> grain_of;
   for (int g = 0; g < static_cast<int>(box.grains.size()); ++g) {
     const PlacedGrainOf<Dim>& grain = box.grains[g];
-    const AggregateOf<Dim>& aggregate = library[choice_of(c, g, grain.radius)];
+    const auto kind = static_cast<std::size_t>(grain.kind);
+    const AggregateLibrary& c = options[kind];
+    const AggregateOf<Dim>& aggregate = library[kind][choice_of(c, g, grain.radius)];
     const auto turn = turn_by(grain.angle);
     double filled = 0;
     for (const double r : aggregate.radius) filled += times_power<Dim>(1, r);
@@ -148,8 +151,9 @@ BpmSampleOf<Dim> fill_box(const BoxSampleOf<Dim>& box, const std::vector<Aggrega
 
 template std::vector<Aggregate> prepare_library<2>(const AggregateLibrary&);
 template std::vector<AggregateOf<3>> prepare_library<3>(const AggregateLibrary&);
-template BpmSample fill_box<2>(const BoxSample&, const std::vector<Aggregate>&, const AggregateLibrary&);
-template BpmSampleOf<3> fill_box<3>(const BoxSampleOf<3>&, const std::vector<AggregateOf<3>>&,
-                                    const AggregateLibrary&);
+template BpmSample fill_box<2>(const BoxSample&, const std::vector<std::vector<Aggregate>>&,
+                               const std::vector<AggregateLibrary>&);
+template BpmSampleOf<3> fill_box<3>(const BoxSampleOf<3>&, const std::vector<std::vector<AggregateOf<3>>>&,
+                                    const std::vector<AggregateLibrary>&);
 
 }  // namespace softgrain

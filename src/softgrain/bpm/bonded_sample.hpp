@@ -37,10 +37,11 @@ using BpmSample = BpmSampleOf<2>;
 
 /// Puts a copy of an aggregate, scaled and turned, in the place of each grain; it weighs density pi R^2, in
 /// space density 4/3 pi R^3. Where bumps of two grains overlap, both are moved apart as wholes by as little
-/// as that takes: the grains keep the places of the sample to a small share of their radius. Raises
-/// UsageError where they cannot be.
+/// as that takes: the grains keep the places of the sample to a small share of their radius. Each kind of
+/// grain has a library. Raises UsageError where they cannot be.
 template <int Dim>
-BpmSampleOf<Dim> fill_box(const BoxSampleOf<Dim>& box, const std::vector<AggregateOf<Dim>>& library,
-                          const AggregateLibrary& options);
+BpmSampleOf<Dim> fill_box(const BoxSampleOf<Dim>& box,
+                          const std::vector<std::vector<AggregateOf<Dim>>>& library,
+                          const std::vector<AggregateLibrary>& options);
 
 }  // namespace softgrain

@@ -85,7 +85,8 @@ template <int Dim>
 Scene BondedGrainsOf<Dim>::scene(const Box<Dim>& box) const {
   const auto& particles = dynamics_.particles;
   Scene scene;
-  std::vector<double> pressure = primary_pressures(dynamics_, attraction_, grain_radius_, impulse_time_);
+  std::vector<double> pressure =
+      primary_pressures(dynamics_, attraction_, adhesion_, grain_radius_, impulse_time_);
   scene.particles["position"] = to_array(particles.position);
   scene.particles["velocity"] = to_array(bodies().velocity);
   scene.particles["radius"] = {1, particles.radius};
@@ -102,6 +103,11 @@ Scene BondedGrainsOf<Dim>::scene(const Box<Dim>& box) const {
     }
   }
   scene.particles["pressure"] = {1, std::move(pressure)};
+  if (kinds() > 1) {
+    std::vector<std::int64_t> kind;
+    for (const int g : particles.grain) kind.push_back(kind_[g]);
+    scene.particles["kind"] = {1, std::move(kind)};
+  }
   return scene;
 }
 

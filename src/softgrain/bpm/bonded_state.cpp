@@ -54,10 +54,12 @@ template <int Dim>
 void BondedGrainsOf<Dim>::set(const Settings& settings) {
   double& tolerance = dynamics_.options.solver.tolerance;
   tolerance = settings.solver_tolerance.value_or(tolerance);
-  const FrictionOfPrimaries before = friction_;
-  friction_.between = settings.friction.value_or(before.between);
-  friction_.wall = settings.wall_friction.value_or(before.wall);
-  if (friction_ != before) dynamics_.set_friction(friction_.rule(dynamics_.particles.grain));
+  const double between = settings.friction.value_or(friction_.between),
+               wall = settings.wall_friction.value_or(friction_.wall);
+  if (between == friction_.between && wall == friction_.wall) return;
+  friction_.between = between;
+  friction_.wall = wall;
+  dynamics_.set_friction(friction_.rule(dynamics_.particles.grain, kind_));
 }
 
 template <int Dim>

@@ -34,7 +34,8 @@ int cells_of_surface(std::size_t primaries) {
 }  // namespace
 
 template <int Dim>
-std::vector<ContactPointOf<Dim>> contact_points(const RigidDynamics<Dim>& dynamics, double impulse_time) {
+std::vector<ContactPointOf<Dim>> contact_points(const RigidDynamics<Dim>& dynamics,
+                                                const SurfaceAttraction<Dim>& adhesion, double impulse_time) {
   const auto& particles = dynamics.particles;
   const auto& contacts = dynamics.contacts;
   const int n = particles.size();
@@ -42,15 +43,19 @@ std::vector<ContactPointOf<Dim>> contact_points(const RigidDynamics<Dim>& dynami
   for (int c = 0; c < contacts.size(); ++c) {
     const int a = contacts.body_a[c], b = contacts.body_b[c];
     const bool wall = b >= n;
-    if (!(contacts.impulse[c][0] > 0) || (!wall && particles.grain[a] == particles.grain[b])) continue;
+    if (!wall && particles.grain[a] == particles.grain[b]) continue;
+    const double pull = impulse_time > 0 ? adhesion.force(particles, contacts, c) : 0;
+    const bool touches = contacts.impulse[c][0] > 0;
+    if (!touches && !(pull > 0)) continue;
     const Vec<Dim>& normal = contacts.normal[c];
+    const Vec<Dim> push = (1 / impulse_time) * from_local(normal, contacts.impulse[c]);
     points.push_back({.a = particles.grain[a],
                       .b = wall ? wall_index(b - n) : particles.grain[b],
-                      .force = (1 / impulse_time) * from_local(normal, contacts.impulse[c]),
+                      .force = pull > 0 ? push - pull * normal : push,
                       .normal = normal,
                       .position = particles.position[a] + particles.radius[a] * normal,
                       // a row of touching primaries: each takes its diameter of the outline
-                      .length = particles.radius[a] + particles.radius[wall ? a : b],
+                      .length = touches ? particles.radius[a] + particles.radius[wall ? a : b] : 0,
                       .image = contacts.shift(c)});
   }
   return points;
@@ -90,7 +95,9 @@ std::vector<SurfaceMeasure> outlines_of(const RigidDynamics<3>& dynamics) {
   return measures;
 }
 
-template std::vector<ContactPointOf<2>> contact_points<2>(const RigidDynamics<2>&, double);
-template std::vector<ContactPointOf<3>> contact_points<3>(const RigidDynamics<3>&, double);
+template std::vector<ContactPointOf<2>> contact_points<2>(const RigidDynamics<2>&,
+                                                          const SurfaceAttraction<2>&, double);
+template std::vector<ContactPointOf<3>> contact_points<3>(const RigidDynamics<3>&,
+                                                          const SurfaceAttraction<3>&, double);
 
 }  // namespace softgrain

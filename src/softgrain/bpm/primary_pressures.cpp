@@ -9,19 +9,24 @@ namespace softgrain {
 template <int Dim>
 std::vector<double> primary_pressures(const RigidDynamics<Dim>& dynamics,
                                       const AttractionForcesOf<Dim>& attraction,
+                                      const SurfaceAttraction<Dim>& adhesion,
                                       std::span<const double> grain_radius, double impulse_time) {
   const auto& particles = dynamics.particles;
   const auto& contacts = dynamics.contacts;
   const int n = particles.size();
+  const auto attracts_from = [&](int c) { return impulse_time > 0 && c >= contacts.blocks.back().begin(); };
   std::vector<BranchForceOf<Dim>> forces;
   for (int c = 0; c < contacts.size(); ++c) {
-    if (!(contacts.impulse[c][0] > 0)) continue;
+    const double pull = attracts_from(c) ? adhesion.force(particles, contacts, c) : 0;
+    if (!(contacts.impulse[c][0] > 0) && !(pull > 0)) continue;
     const int a = contacts.body_a[c], b = contacts.body_b[c];
     const Vec<Dim>& normal = contacts.normal[c];
     const bool wall = b >= n;
+    Vec<Dim> force = (1 / impulse_time) * from_local(normal, contacts.impulse[c]);
+    if (pull > 0) force -= pull * normal;
     forces.push_back({.a = a,
                       .b = wall ? -1 : b,
-                      .force = (1 / impulse_time) * from_local(normal, contacts.impulse[c]),
+                      .force = force,
                       .branch_a = particles.radius[a] * normal,
                       .branch_b = wall ? Vec<Dim>{} : -particles.radius[b] * normal});
   }
@@ -43,8 +48,10 @@ std::vector<double> primary_pressures(const RigidDynamics<Dim>& dynamics,
 }
 
 template std::vector<double> primary_pressures<2>(const RigidDynamics<2>&, const AttractionForcesOf<2>&,
-                                                  std::span<const double>, double);
+                                                  const SurfaceAttraction<2>&, std::span<const double>,
+                                                  double);
 template std::vector<double> primary_pressures<3>(const RigidDynamics<3>&, const AttractionForcesOf<3>&,
-                                                  std::span<const double>, double);
+                                                  const SurfaceAttraction<3>&, std::span<const double>,
+                                                  double);
 
 }  // namespace softgrain

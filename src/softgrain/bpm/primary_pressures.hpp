@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "softgrain/bpm/attraction_forces.hpp"
+#include "softgrain/bpm/surface_attraction.hpp"
 #include "softgrain/rigid/step.hpp"
 
 namespace softgrain {
@@ -13,6 +14,7 @@ namespace softgrain {
 template <int Dim>
 std::vector<double> primary_pressures(const RigidDynamics<Dim>& dynamics,
                                       const AttractionForcesOf<Dim>& attraction,
+                                      const SurfaceAttraction<Dim>& adhesion,
                                       std::span<const double> grain_radius, double impulse_time);
 
 }  // namespace softgrain

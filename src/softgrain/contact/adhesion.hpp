@@ -1,6 +1,9 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include "softgrain/contact/by_kinds.hpp"
 
 namespace softgrain {
 
@@ -32,5 +35,19 @@ struct Adhesion {
     return strength() * ((within + (std::min(next, 0.0) - std::min(gap, 0.0))) / way);
   }
 };
+
+/// Adhesion of the grains of two kinds, or of a kind and walls.
+struct PairAdhesion {
+  static constexpr int wall = ByKinds<Adhesion>::wall;
+  int kind = 0;
+  int other = wall;  ///< another kind, the same, or `wall`
+  Adhesion law{};
+};
+
+/// Adhesion of every pair of kinds: none but of those named. Raises UsageError for a surface energy < 0 or a
+/// range <= 0, and for kinds that are not there.
+ByKinds<Adhesion> adhesion_by_kinds(int kinds, std::span<const PairAdhesion> named);
+/// The longest range [m]; 0: nothing adheres.
+double longest_range(std::span<const PairAdhesion> named);
 
 }  // namespace softgrain

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/sample.hpp"
 
@@ -22,7 +23,7 @@ constexpr double rigid_range = 0.25;
 /// What adhesion asks of a kind.
 struct AdhesiveKind {
   double stiffness = rigid;  ///< E/(1 - nu^2) [Pa], plane strain
-  double segment = 0;        ///< of the outline of its largest grain [m]
+  double segment = 0;        ///< of the outline of its largest grain; bonded: a primary [m]
   double radius = 0;         ///< of its smallest grain [m]
 };
 
@@ -34,6 +35,7 @@ AdhesiveKind adhesive_kind(const Case& c) {
   } else if (is_in_a_box(c)) {
     least = c.sample.smallest_diameter / 2, largest = c.sample.largest_diameter / 2;
   }
+  if (is_bonded(c)) return {.segment = mean_touching_distance(c), .radius = least};
   AdhesiveKind kind{.segment = 2 * std::numbers::pi * largest / (4 * c.mpm.cells), .radius = least};
   const MaterialParameters& m = c.mpm.material;
   if (is_elastic(c)) kind.stiffness = m.young_modulus / (1 - m.poisson_ratio * m.poisson_ratio);

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
+#include "softgrain/contact/adhesion.hpp"
 #include "softgrain/experiment/case.hpp"
-#include "softgrain/soft/outline_adhesion.hpp"
 
 namespace softgrain {
 
@@ -10,7 +10,7 @@ namespace softgrain {
 /// range of its own a pair gets
 ///   delta = 4 sqrt(n h w/(pi E*)),  n = 3,
 /// at which the cohesive zone pi/4 E* w/sigma_0^2 (theory (81)) spans n segments h of the outline of its
-/// largest grains; rigid grains among themselves and at walls get h/4.
+/// largest grains; rigid grains among themselves and at walls get h/4, bonded ones <a0>/4 of their smallest.
 std::vector<PairAdhesion> adhesion_of(const Case& the_case);
 
 /// How well a case resolves its adhesion: the worst of all pairs. Infinite where nothing adheres, or only

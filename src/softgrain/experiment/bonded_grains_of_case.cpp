@@ -3,8 +3,10 @@
 
 #include "softgrain/bpm/bonded_grains.hpp"
 #include "softgrain/bpm/bonded_sample.hpp"
+#include "softgrain/experiment/adhesion_of_case.hpp"
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
+#include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/sample.hpp"
 #include "softgrain/geometry/ball.hpp"
 #include "softgrain/geometry/support.hpp"
@@ -76,6 +78,7 @@ BondedGrainsSetupOf<Dim> setup_between_walls(const Case& c) {
   return {.particles = single_grain(c, aggregate),
           .grain_radius = {c.grain.radius},
           .laws = {{.F0 = attraction_of(c), .gamma = c.bpm.exponent}},
+          .kind = {0},
           .friction = {},
           .options = {},
           .skin = skin_of_one_grain * aggregate.mean_distance * c.grain.radius,
@@ -83,23 +86,37 @@ BondedGrainsSetupOf<Dim> setup_between_walls(const Case& c) {
           .sigma_I = cohesive_pressure<Dim>(attraction_of(c), mean_distance)};
 }
 
-/// sigma_I is the same in every grain.
+/// sigma_I is the same in every grain of a kind.
 template <int Dim>
 BondedGrainsSetupOf<Dim> setup_in_a_box(const Case& c) {
   const BoxSampleOf<Dim> box = box_sample_of<Dim>(c);
-  BpmSampleOf<Dim> sample = fill_box(box, prepare_library<Dim>(library_of(c)), library_of(c));
+  std::vector<Case> kind;
+  std::vector<AggregateLibrary> options;
+  std::vector<std::vector<AggregateOf<Dim>>> library;
+  for (int k = 0; k < kinds_of(c); ++k) {
+    kind.push_back(case_of_kind(c, k));
+    options.push_back(library_of(kind.back()));
+    library.push_back(prepare_library<Dim>(options.back()));
+  }
+  BpmSampleOf<Dim> sample = fill_box(box, library, options);
   const double smallest = *std::min_element(sample.mean_distance.begin(), sample.mean_distance.end());
-  BondedGrainsSetupOf<Dim> setup{.particles = std::move(sample.particles),
-                                 .grain_radius = {},
-                                 .laws = {},
-                                 .friction = {},
-                                 .options = {},
-                                 .skin = skin_in_a_box * smallest,
-                                 .density = 0,
-                                 .sigma_I = c.bpm.cohesive_pressure};
-  for (const auto& grain : box.grains) setup.grain_radius.push_back(grain.radius);
-  for (const double a0 : sample.mean_distance)
-    setup.laws.push_back({.F0 = attraction_with<Dim>(c.bpm.cohesive_pressure, a0), .gamma = c.bpm.exponent});
+  BondedGrainsSetupOf<Dim> setup{
+      .particles = std::move(sample.particles),
+      .grain_radius = {},
+      .laws = {},
+      .kind = {},
+      .friction = {},
+      .options = {},
+      .skin = skin_in_a_box * smallest,
+      .density = 0,
+      .sigma_I = least_of_kinds(c, [](const Case& of_kind) { return of_kind.bpm.cohesive_pressure; })};
+  for (std::size_t g = 0; g < box.grains.size(); ++g) {
+    const Case::Bpm& bpm = kind[static_cast<std::size_t>(box.grains[g].kind)].bpm;
+    setup.grain_radius.push_back(box.grains[g].radius);
+    setup.kind.push_back(box.grains[g].kind);
+    setup.laws.push_back(
+        {.F0 = attraction_with<Dim>(bpm.cohesive_pressure, sample.mean_distance[g]), .gamma = bpm.exponent});
+  }
   return setup;
 }
 
@@ -109,10 +126,15 @@ template <int Dim>
 PlacedModelOf<Dim> bonded_grains_of(const Case& c) {
   const double dt = checked_bonded_time_step(c);
   BondedGrainsSetupOf<Dim> setup = is_in_a_box(c) ? setup_in_a_box<Dim>(c) : setup_between_walls<Dim>(c);
-  setup.friction = {
-      .inside = c.bpm.inner_friction, .between = c.contact.friction, .wall = c.contact.wall_friction};
+  setup.friction = {.inside = {},
+                    .between = c.contact.friction,
+                    .wall = c.contact.wall_friction,
+                    .named = pair_friction_of(c)};
+  for (int k = 0; k < kinds_of(c); ++k)
+    setup.friction.inside.push_back(case_of_kind(c, k).bpm.inner_friction);
+  setup.adhesion = adhesion_of(c);
   setup.options = rigid_step_options(c);
-  setup.density = c.grain.density;
+  setup.density = largest_of_kinds(c, [](const Case& kind) { return kind.grain.density; });
   setup.gravity = gravity_of<Dim>(c);
   Box<Dim> box(setup.particles.walls);
   box.cell = setup.particles.cell;

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/experiment/adhesion_of_case.hpp"
+#include "softgrain/experiment/kinds.hpp"
 
 namespace softgrain {
 namespace {
@@ -50,21 +53,38 @@ double attraction_of(const Case& c, double a0) {
                         : attraction_with<2>(c.bpm.cohesive_pressure, a0);
 }
 
+/// Of surfaces that attract each other [s].
+double period_of_adhesion(const Case& c, const SmallestPrimary& smallest) {
+  const double l = 2 * smallest.radius, face = is_in_space(c) ? l * l : l;
+  double period = std::numeric_limits<double>::infinity();
+  for (const PairAdhesion& pair : adhesion_of(c)) {
+    const double stiffness = face * pair.law.strength() / pair.law.range;
+    const double mass = pair.other == PairAdhesion::wall ? smallest.mass : smallest.mass / 2;
+    period = std::min(period, 2 * std::numbers::pi * std::sqrt(mass / stiffness));
+  }
+  return period;
+}
+
 }  // namespace
 
+double mean_touching_distance(const Case& c) { return SmallestPrimary(c).radius * (1 + c.bpm.size_ratio); }
+
 double bond_period(const Case& c) {
-  const SmallestPrimary smallest(c);
-  const double mean_a0 = smallest.radius * (1 + c.bpm.size_ratio);
-  const double F0 = attraction_of(c, mean_a0);
-  const double a0 = 2 * smallest.radius;
-  return 2 * std::numbers::pi * std::sqrt(smallest.mass * a0 / (2 * c.bpm.exponent * F0));
+  return least_of_kinds(c, [&](const Case& kind) {
+    const SmallestPrimary smallest(kind);
+    const double F0 = attraction_of(kind, mean_touching_distance(kind));
+    const double a0 = 2 * smallest.radius;
+    const double period = 2 * std::numbers::pi * std::sqrt(smallest.mass * a0 / (2 * kind.bpm.exponent * F0));
+    return std::min(period, period_of_adhesion(c, smallest));
+  });
 }
 
 double critical_bond_step(const Case& c) { return bond_period(c) / std::numbers::pi; }
 
 double stable_bond_step(const Case& c) {
   const double by_bonds = paper_step * (bond_period(c) / bond_period(Case{}));
-  return std::min(by_bonds, wall_share * SmallestPrimary(c).radius / c.loading.wall_velocity);
+  const double radius = least_of_kinds(c, [](const Case& kind) { return SmallestPrimary(kind).radius; });
+  return std::min(by_bonds, wall_share * radius / c.loading.wall_velocity);
 }
 
 double bonded_time_step(const Case& c) {

@@ -10,8 +10,12 @@ namespace softgrain {
 /// Two of the smallest primaries, of mass m and with a0 = 2 r, bonded with F0, have the period
 ///   T = 2 pi sqrt(m a0 / (2 gamma F0)) [s],
 /// that of a spring of stiffness |F'(a0)| = gamma F0/a0. In a box F0 = sigma_I <a0>, in the smallest grain;
-/// in space sigma_I <a0>^2.
+/// in space sigma_I <a0>^2. Where surfaces attract (SurfaceAttraction) and that is shorter: that of the same
+/// two between two grains, or of one at a wall, of stiffness |F'| = l 2 w/delta^2, in space l^2 2 w/delta^2.
 double bond_period(const Case& the_case);
+
+/// <a0> of the smallest grain [m]: the mean distance at which its primaries touch.
+double mean_touching_distance(const Case& the_case);
 
 /// sigma_I [Pa] of grains whose primaries attract each other with F0 and touch at <a0> [m] in the mean, and
 /// F0 of a sigma_I: F0 = sigma_I <a0> [N/m], in space sigma_I <a0>^2 [N].

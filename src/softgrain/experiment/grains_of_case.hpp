@@ -2,11 +2,11 @@
 #include <memory>
 #include <vector>
 
+#include "softgrain/contact/pair_friction.hpp"
 #include "softgrain/experiment/case.hpp"
 #include "softgrain/experiment/sample.hpp"
 #include "softgrain/geometry/box.hpp"
 #include "softgrain/model/model.hpp"
-#include "softgrain/soft/pair_friction.hpp"
 
 namespace softgrain {
 

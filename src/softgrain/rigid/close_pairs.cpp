@@ -49,7 +49,8 @@ template <int Dim>
 std::vector<BodyPair> close_pairs_of_images(const RigidParticles<Dim>& particles,
                                             const NeighbourReference<Dim>& reference) {
   const std::vector<double>& radius = particles.radius;
-  const double reach = 2 * *std::max_element(radius.begin(), radius.end()) + reference.skin;
+  const double apart = reference.skin + reference.reach;
+  const double reach = 2 * *std::max_element(radius.begin(), radius.end()) + apart;
   const Images<Dim> images(reference.between, reference.cell, reach);
   const CellGrid<Dim> grid(images.position, reach);
   const auto pairs_of = [&](int i, std::vector<BodyPair>& pairs) {
@@ -57,7 +58,7 @@ std::vector<BodyPair> close_pairs_of_images(const RigidParticles<Dim>& particles
       const int j = images.point[at];
       if (j < i || particles.grain[i] == particles.grain[j]) return;
       const Vec<Dim> d = images.position[at] - images.position[i];
-      const double touch = radius[i] + radius[j] + reference.skin;
+      const double touch = radius[i] + radius[j] + apart;
       if (dot(d, d) >= touch * touch) return;
       BodyPair pair{i, j};
       const auto image = images.between(i, at);
@@ -80,16 +81,17 @@ template <int Dim>
 std::vector<BodyPair> pairs_between(const RigidParticles<Dim>& particles,
                                     const NeighbourReference<Dim>& reference) {
   const auto& grain = particles.grain;
+  const double apart = reference.skin + reference.reach;
   std::vector<BodyPair> pairs;
   if (reference.cell.any())
     pairs = close_pairs_of_images(particles, reference);
   else if (reference.grains.size() > 1)
-    pairs = close_pairs(particles, reference.between, reference.skin, {0, particles.size()},
+    pairs = close_pairs(particles, reference.between, apart, {0, particles.size()},
                         [&](int i, int j) { return grain[i] == grain[j]; });
   for (std::size_t w = 0; w < particles.walls.size(); ++w) {
     for (int i = 0; i < particles.size(); ++i) {
       const double height = dot(reference.between[i] - reference.wall_point[w], particles.walls[w].normal);
-      if (height < particles.radius[i] + reference.skin)
+      if (height < particles.radius[i] + apart)
         pairs.push_back({i, particles.wall_body(static_cast<int>(w))});
     }
   }

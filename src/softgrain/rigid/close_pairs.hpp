@@ -13,12 +13,12 @@ struct BodyPair {
   bool crosses() const { return image != std::array<int, 3>{}; }
 };
 
-/// Pairs of a list with gap < skin at its reference: of particles of different grains, through all images,
-/// then of particles and walls.
+/// Pairs of a list with gap < skin + reach at its reference: of particles of different grains, through all
+/// images, then of particles and walls.
 template <int Dim>
 std::vector<BodyPair> pairs_between(const RigidParticles<Dim>& particles,
                                     const NeighbourReference<Dim>& reference);
-/// Those of the particles of a grain.
+/// Those of the particles of a grain with gap < skin.
 template <int Dim>
 std::vector<BodyPair> pairs_inside(const RigidParticles<Dim>& particles,
                                    const NeighbourReference<Dim>& reference, const GrainRange& grain);

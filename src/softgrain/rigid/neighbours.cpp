@@ -55,7 +55,7 @@ struct Bounds {
 
 template <int Dim>
 void find_close_grains(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
-  const double room = reference.skin + 2 * reference.far;
+  const double room = reference.skin + 2 * reference.far + reference.reach;
   std::vector<Vec<Dim>>& centre = reference.centre;
   std::vector<double> radius;
   centre.clear();
@@ -111,7 +111,7 @@ double farthest(const NeighbourReference<Dim>& reference, const PeriodicCell<Dim
   if (cell.any()) {
     const Mat<Dim> stretch = stretch_since(reference.cell, cell);
     for (int g = 0; g < reference.between_list(); ++g) moved[g].middle -= stretch * reference.centre[g];
-    const double together = 2 * (reference.widest + reference.far) + reference.skin;
+    const double together = 2 * (reference.widest + reference.far) + reference.skin + reference.reach;
     most = 0.5 * together * std::sqrt(contract(stretch, stretch));
   }
   double farthest = 0;

@@ -24,6 +24,7 @@ struct GrainRange {
 template <int Dim>
 struct NeighbourReference {
   double skin = 0;                   ///< [m]
+  double reach = 0;                  ///< gap up to which the list between grains is complete [m]
   std::vector<Vec<Dim>> position;    ///< (n) [m] of the list inside the particle's grain
   std::vector<Vec<Dim>> between{};   ///< (n) [m] of the list between grains
   std::vector<Vec<Dim>> wall_point;  ///< (walls) [m] of the list between grains

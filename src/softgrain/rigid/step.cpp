@@ -101,13 +101,24 @@ void RigidDynamics<Dim>::list_pressed_walls() {
   list_between_again();
 }
 
+/// Of the force field on the walls of a press, along their normals [N/m].
+template <int Dim>
+double RigidDynamics<Dim>::pull_on(const Press& press) const {
+  double pull = 0;
+  for (std::size_t w = 0; w < particles.walls.size(); ++w)
+    if (press.share[w] != 0)
+      pull +=
+          press.share[w] * dot(force_[particles.wall_body(static_cast<int>(w))], particles.walls[w].normal);
+  return pull;
+}
+
 /// The presses under the impulses that their contacts carry now.
 template <int Dim>
 PushedBodies RigidDynamics<Dim>::pressed_walls(double dt) const {
   PushedBodies pushed;
   if (particles.presses.empty()) return pushed;
   for (const Press& press : particles.presses)
-    pushed.bodies.push_back({.free = press.free_speed(dt),
+    pushed.bodies.push_back({.free = press.free_speed(dt) + dt * press.mobility(dt) * pull_on(press),
                              .mobility = press.mobility(dt),
                              .most = press.most,
                              .assumed = press.speed});
@@ -133,16 +144,17 @@ template <int Dim>
 void RigidDynamics<Dim>::end_step_of_presses(double dt) {
   const PushedBodies pushed = pressed_walls(dt);
   for (std::size_t k = 0; k < particles.presses.size(); ++k)
-    particles.presses[k].end_step(pushed.bodies[k].velocity(), pushed.bodies[k].push, dt);
+    particles.presses[k].end_step(pushed.bodies[k].velocity(),
+                                  pushed.bodies[k].push - dt * pull_on(particles.presses[k]), dt);
 }
 
 /// Keeps the velocities of the start.
 template <int Dim>
 void RigidDynamics<Dim>::kick(const ForceField<Dim>& field, double dt) {
-  force_.resize(particles.size());
+  force_.resize(particles.velocity.size());
   velocity_start_.resize(particles.velocity.size());
   spin_start_.resize(particles.spin.size());
-  parallel_ranges(particles.size(), [&](int begin, int end) {
+  parallel_ranges(static_cast<int>(force_.size()), [&](int begin, int end) {
     std::fill(force_.begin() + begin, force_.begin() + end, Vec<Dim>{});
   });
   field(particles, force_);
@@ -207,8 +219,12 @@ void RigidDynamics<Dim>::account_work(double dt) {
   if (!std::isfinite(sum[1])) throw_not_finite();
   work = {.force = sum[0]};
   add_up_wall_impulses();
-  for (std::size_t w = 0; w < particles.walls.size(); ++w)
-    work.wall -= dot(wall_impulse_[w], middle(particles.wall_body(static_cast<int>(w))));
+  for (int w = 0; w < static_cast<int>(particles.walls.size()); ++w) {
+    const int wall = particles.wall_body(w);
+    work.force += dt * dot(force_[wall], middle(wall));
+    wall_impulse_[w] += dt * force_[wall];
+    work.wall -= dot(wall_impulse_[w], middle(wall));
+  }
   work.wall += work_of_cell();
   work.contact = sum[1] - work.force - work.wall;
   account_contacts();

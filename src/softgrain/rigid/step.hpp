@@ -14,7 +14,8 @@
 
 namespace softgrain {
 
-/// Adds the forces on the particles at their present positions [N/m in 2D, N in 3D].
+/// Adds the forces on the particles, and on the walls after them, at their present positions [N/m in 2D, N in
+/// 3D]. Walls of presses follow theirs.
 template <int Dim>
 using ForceField = std::function<void(const RigidParticles<Dim>&, std::span<Vec<Dim>> force)>;
 
@@ -85,6 +86,7 @@ class RigidDynamics {
   void prepare(int begin, int end, double dt);
   void list_pressed_walls();
   void list_between_again();
+  double pull_on(const Press& press) const;
   PushedBodies pressed_walls(double dt) const;
   void move_presses(double dt);
   void end_step_of_presses(double dt);

@@ -11,10 +11,10 @@
 #include "softgrain/model/soft_step_report.hpp"
 #include "softgrain/model/work_budget.hpp"
 #include "softgrain/soft/elastic_contacts.hpp"
+#include "softgrain/soft/friction_by_kind.hpp"
 #include "softgrain/soft/history.hpp"
 #include "softgrain/soft/outline_adhesion.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
-#include "softgrain/soft/pair_friction.hpp"
 #include "softgrain/soft/rigid_motion.hpp"
 #include "softgrain/soft/soft_grains.hpp"
 

@@ -10,16 +10,7 @@
 namespace softgrain {
 
 OutlineAdhesion::OutlineAdhesion(const SoftGrains& grains, std::span<const PairAdhesion> named)
-    : law_(grains.kinds(), {}, {}) {
-  for (const auto& [kind, other, law] : named) {
-    require(law.surface_energy >= 0 && std::isfinite(law.surface_energy),
-            "the surface energy must be >= 0 J/m^2, got {}", law.surface_energy);
-    law_.set(kind, other, law, "adhesion");
-    if (!law.any()) continue;
-    require(law.range > 0 && std::isfinite(law.range), "the range of adhesion must be > 0 m, got {}",
-            law.range);
-    range_ = std::max(range_, law.range);
-  }
+    : range_(longest_range(named)), law_(adhesion_by_kinds(grains.kinds(), named)) {
   if (!any()) return;
   for (int g = 0; g < grains.size(); ++g) {
     const std::span<const Vec<2>> X = grains.topology(g).grid.outline();
@@ -40,7 +31,7 @@ AdhesiveContacts OutlineAdhesion::contacts(const SoftGrains& grains, std::span<c
   parallel_ranges(static_cast<int>(contacts.size()), [&](int begin, int end) {
     for (int c = begin; c < end; ++c) {
       const OutlineContact& contact = contacts[c];
-      const Adhesion& law = law_.of(grains, contact);
+      const Adhesion& law = value_of(law_, grains, contact);
       if (!law.any()) continue;
       adhesive.contact[c] = {.law = law,
                              .pull = length_of(contact) * state.dt,

@@ -8,14 +8,6 @@
 
 namespace softgrain {
 
-/// Adhesion of the grains of two kinds, or of a kind and walls.
-struct PairAdhesion {
-  static constexpr int wall = ByKinds<Adhesion>::wall;
-  int kind = 0;
-  int other = wall;  ///< another kind, the same, or `wall`
-  Adhesion law{};
-};
-
 /// Adhesion of outlines by pair of kinds. Each vertex stands for half of the segments beside it on the
 /// undeformed outline, at a wall with all of that length and against another grain with half, as the other
 /// grain's vertices stand for the same faces.
@@ -38,7 +30,7 @@ class OutlineAdhesion {
   double energy(const SoftGrains& grains, std::span<const OutlineContact> contacts, const Gap& gap) const {
     double sum = 0;
     for (const OutlineContact& contact : contacts) {
-      const Adhesion& law = law_.of(grains, contact);
+      const Adhesion& law = value_of(law_, grains, contact);
       if (law.any()) sum += length_of(contact) * law.energy(gap(contact));
     }
     return sum;

@@ -2,8 +2,8 @@
 #include <span>
 #include <vector>
 
+#include "softgrain/soft/friction_by_kind.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
-#include "softgrain/soft/pair_friction.hpp"
 
 namespace softgrain {
 

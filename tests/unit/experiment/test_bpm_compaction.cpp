@@ -80,7 +80,7 @@ TEST_CASE("both models begin with the same sample, bit for bit") {
 TEST_CASE("grains of primaries stand in their places without overlap, each with the mass of its disk") {
   const Case c = small_case();
   const BoxSample box = sample_box(c);
-  const BpmSample sample = fill_box(box, prepare_library(library_of(c)), library_of(c));
+  const BpmSample sample = fill_box<2>(box, {prepare_library(library_of(c))}, {library_of(c)});
   const RigidParticles<2>& p = sample.particles;
   CHECK(p.size() == 180);
   CHECK(sample.displaced < 0.2);
@@ -131,7 +131,7 @@ TEST_CASE(
 TEST_CASE("F0 follows the size of the primaries, so that every grain has the same cohesive pressure") {
   const Case c = small_case();
   const BoxSample box = sample_box(c);
-  const BpmSample sample = fill_box(box, prepare_library(library_of(c)), library_of(c));
+  const BpmSample sample = fill_box<2>(box, {prepare_library(library_of(c))}, {library_of(c)});
   // the same aggregate in two grains: <a0> scales with the radius
   CHECK(sample.mean_distance[0] / sample.mean_distance[2] ==
         doctest::Approx(box.grains[0].radius / box.grains[2].radius));
@@ -156,7 +156,7 @@ TEST_CASE("with primaries of one size, larger grains have more of them") {
   c.bpm.equal = EqualPrimaries::size;
   c.bpm.library = 5;
   const BoxSample box = sample_box(c);
-  const BpmSample sample = fill_box(box, prepare_library(library_of(c)), library_of(c));
+  const BpmSample sample = fill_box<2>(box, {prepare_library(library_of(c))}, {library_of(c)});
   double smallest = 1, largest = 0;
   for (int g = 0; g < 12; ++g) {
     CHECK(sample.begin[g + 1] - sample.begin[g] >= 30);

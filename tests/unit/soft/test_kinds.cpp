@@ -4,8 +4,8 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/soft/explicit_step.hpp"
+#include "softgrain/soft/friction_by_kind.hpp"
 #include "softgrain/soft/implicit_step.hpp"
-#include "softgrain/soft/pair_friction.hpp"
 #include "softgrain/soft/soft_view.hpp"
 #include "softgrain/soft/stable_step.hpp"
 #include "support/soft_grains.hpp"

@@ -1,24 +1,15 @@
-#include "softgrain/soft/pair_friction.hpp"
-
-#include "softgrain/core/error.hpp"
+#include "softgrain/soft/friction_by_kind.hpp"
 
 namespace softgrain {
 
 FrictionByKind::FrictionByKind(int kinds, double between_grains, double at_walls,
                                std::span<const PairFriction> named)
-    : mu_(kinds, between_grains, at_walls) {
-  require(between_grains >= 0 && at_walls >= 0, "friction must be >= 0, got {} and {}", between_grains,
-          at_walls);
-  for (const auto& [kind, other, mu] : named) {
-    require(mu >= 0, "friction must be >= 0, got {}", mu);
-    mu_.set(kind, other, mu, "friction");
-  }
-}
+    : mu_(friction_by_kinds(kinds, between_grains, at_walls, named)) {}
 
 template <int Dim>
 std::vector<double> FrictionByKind::of(const GrainsOf<Dim>& grains, Contacts<Dim> contacts) const {
   std::vector<double> friction;
-  for (const auto& contact : contacts) friction.push_back(mu_.of(grains, contact));
+  for (const auto& contact : contacts) friction.push_back(value_of(mu_, grains, contact));
   return friction;
 }
 

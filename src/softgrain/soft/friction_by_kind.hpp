@@ -2,18 +2,11 @@
 #include <span>
 #include <vector>
 
+#include "softgrain/contact/pair_friction.hpp"
 #include "softgrain/soft/by_kinds.hpp"
 #include "softgrain/soft/contact_of.hpp"
 
 namespace softgrain {
-
-/// mu of the contacts between grains of two kinds, or of a kind and walls.
-struct PairFriction {
-  static constexpr int wall = ByKinds<double>::wall;
-  int kind = 0;
-  int other = wall;  ///< another kind, the same, or `wall`
-  double mu = 0;
-};
 
 /// Coulomb's mu of every pair of kinds.
 class FrictionByKind {
