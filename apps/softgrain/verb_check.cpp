@@ -33,10 +33,10 @@ std::vector<std::string> notes_of(const CaseReading& reading) {
 
 namespace {
 
-/// Bonded grains and grains in space do not adhere.
+/// Elastic grains in space do not adhere.
 AdhesionAdvice adhesion_advice(const Case& the_case) {
   Case adhering = the_case;
-  if (is_bonded(the_case) || is_in_space(the_case)) adhering.contact = {};
+  if (!is_bonded(the_case) && is_in_space(the_case)) adhering.contact = {};
   return advise_on_adhesion(adhering);
 }
 

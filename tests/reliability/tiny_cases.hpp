@@ -146,6 +146,18 @@ inline std::vector<TinyCase> tiny_cases() {
     }
     if (name == "compaction_3d") {
       Words more = tiny_path(name);
+      const std::string stone = (fs::path(SOFTGRAIN_SOURCE_DIR) / "tests/data/surfaces/stone.stl").string();
+      more.insert(more.end(), {"experiment.model=rigid", "grain.surface=\"" + stone + "\"", "mpm.cells=3",
+                               "contact.friction=0.3", "loading.wall_velocity=\"1 m/s\""});
+      cases.push_back({"rigid-surfaces", source, more});
+    }
+    if (name == "bonded_spheres") {
+      Words more = tiny_path(name);
+      more.insert(more.end(), {"contact.surface_energy=2", "contact.wall_surface_energy=2"});
+      cases.push_back({"sticky-bonded_spheres", source, more});
+    }
+    if (name == "compaction_3d") {
+      Words more = tiny_path(name);
       more.insert(more.end(), {"box.x=\"periodic\"", "box.y=\"periodic\"", "box.z=\"periodic\"",
                                "sample.grains=20", "sample.packing_fraction=0.45", "mpm.law=\"prony\"",
                                "mpm.relaxation_share_1=0.5", "mpm.relaxation_time_1=\"0.1 ms\"",
@@ -171,6 +183,8 @@ inline std::vector<TinyCase> tiny_cases() {
     if (name == "explicit") more.insert(more.end(), {"mpm.integrator=\"explicit\"", "time.step=0"});
     add_variant("periodic-" + name, name == "explicit" ? "compaction-mpm" : name, more);
   }
+  add_variant("sticky-compaction-bpm", "compaction-bpm",
+              {"contact.surface_energy=4", "contact.wall_surface_energy=4"});
   add_variant("explicit-compaction", "compaction-mpm", {"mpm.integrator=\"explicit\"", "time.step=0"});
   add_variant("explicit-diametral", "diametral-mpm",
               {"mpm.integrator=\"explicit\"", "time.step=0", "grain.radius=\"1 mm\""});

@@ -74,30 +74,45 @@ def _of_one_kind(case, facts):
         return who
     if facts.model == "mpm":
         return f"{who}, made of {_material({**case['mpm'], 'name': case['mpm']['law']})}"
-    unit, section = ("N", "<a0>^2") if facts.in_space else ("N/m", "<a0>")
-    force = (f"a force F0 = {quantity(bpm['force' if facts.in_space else 'attraction'], unit)}" if single else
-             f"an internal cohesive pressure F0/{section} = {quantity(bpm['cohesive_pressure'], 'Pa')}")
-    primaries = f"rigid primary {'spheres' if facts.in_space else 'disks'}"
-    return (f"{who}, by the bonded particle model [nezamabadi2017]: aggregates of {each(facts, primaries)}, with a ratio of "
-            f"diameters of {bpm['size_ratio']:.4g}, that attract one another with {force}, which decays with the exponent "
+    force = f"a force F0 = {quantity(bpm['force'], 'N') if facts.in_space else quantity(bpm['attraction'], 'N/m')}"
+    return f"{who}, {_bonded(bpm, each(facts, _primaries(facts)), force if single else _cohesive_pressure(bpm, facts))}"
+
+
+def _primaries(facts):
+    return f"rigid primary {'spheres' if facts.in_space else 'disks'}"
+
+
+def _cohesive_pressure(bpm, facts):
+    return f"an internal cohesive pressure F0/{'<a0>^2' if facts.in_space else '<a0>'} = {quantity(bpm['cohesive_pressure'], 'Pa')}"
+
+
+def _bonded(bpm, primaries, force):
+    return (f"by the bonded particle model [nezamabadi2017]: aggregates of {primaries}, with a ratio of diameters of "
+            f"{bpm['size_ratio']:.4g}, that attract one another with {force}, which decays with the exponent "
             f"{bpm['exponent']:.4g}, and have a coefficient of friction of {bpm['inner_friction']:.4g}")
 
 
 def _of_kind(kind, case, facts):
     number = f"{kind['number']}" if kind.get("number") else f"a share of {kind['share']:.4g} of the area, in"
-    rigid = kind.get("model", case["experiment"]["model"]) == "rigid"
+    model = kind.get("model", case["experiment"]["model"])
+    rigid = model == "rigid"
     diameter = kind["diameter"]
     size = "given places and sizes" if case["sample"]["placed"] else _diameters(
         {"placed": [], "sizes": diameter["distribution"], "diameters": diameter["values"], "smallest_diameter": diameter["smallest"],
          "largest_diameter": diameter["largest"]})
     who = (f"{number} {'rigid ' if rigid else ''}{_shape(kind, kind.get('number') or 2, facts.in_space)} of {size} and a density of "
            f"{kind['density']:.4g} kg/m^3")
+    if model == "bpm":
+        bpm, primaries = {**case["bpm"], **kind["law"]}, f"{kind['primaries']} {_primaries(facts)} each"
+        return f"{who}, {_bonded(bpm, primaries, _cohesive_pressure(bpm, facts))}"
     return who if rigid else f"{who}, made of {_material(kind['law'])}"
 
 
 def _shape(grain, count, in_space):
     shape = grain.get("shape", "disk")
     many = "" if count == 1 else "s"
+    if shape == "surface":
+        return f"grain{many} with a surface of {len(grain['surface'][1])} triangles"
     if in_space:
         return f"sphere{many}"
     if shape == "ellipse":

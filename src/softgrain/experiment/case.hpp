@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "softgrain/geometry/outline_curve.hpp"
+#include "softgrain/geometry/star_surface.hpp"
 #include "softgrain/lattice/contact_on.hpp"
 #include "softgrain/lattice/shape_functions.hpp"
 #include "softgrain/loading/stage.hpp"
@@ -36,6 +37,7 @@ enum class ShapeOfGrain {
   ellipse,
   polygon,
   outline,  ///< of the grain's own
+  surface,  ///< the same in space
 };
 enum class EqualPrimaries { count, size };  ///< what the grains of a packing share
 enum class Integrator {
@@ -65,6 +67,7 @@ struct Case {
     double aspect = 2;                        ///< of an ellipse, long over short axis
     int sides = 5;                            ///< of a regular polygon
     std::vector<OutlinePoint> outline{};      ///< of a shape of one's own, in any unit
+    TriangleMesh surface{};                   ///< of one in space, in any unit
     double angle = 0;                         ///< by which one between two walls is turned [rad]
   } grain;
 
@@ -163,8 +166,9 @@ struct Case {
   struct Kind {
     std::string name;
     int grains = 0;                      ///< in the box
-    GrainModel model = GrainModel::mpm;  ///< or rigid
+    GrainModel model = GrainModel::mpm;  ///< or rigid; all of them bpm, or none
     Grain grain;                         ///< but its radius
+    Bpm bpm;                             ///< of bonded grains
     MaterialLaw law = MaterialLaw::neo_hookean;
     MaterialParameters material;
     int cells = 0;

@@ -25,6 +25,8 @@ Case twin_of(Case c) {
   for (Case::Kind& kind : c.kinds) {
     kind.cells = std::min(kind.cells, std::max(4, least_cells(kind.grain)));
     kind.grains = std::min(kind.grains, 4);
+    kind.bpm.primaries = std::min(kind.bpm.primaries, 20);
+    kind.bpm.library = 1;
   }
   c.sample.packing_fraction = std::min(c.sample.packing_fraction, 0.2);
   c.sample.aspect = 1;

@@ -15,7 +15,9 @@ Case case_of_kind(Case c, int k) {
              .shape = kind.grain.shape,
              .aspect = kind.grain.aspect,
              .sides = kind.grain.sides,
-             .outline = kind.grain.outline};
+             .outline = kind.grain.outline,
+             .surface = kind.grain.surface};
+  c.bpm = kind.bpm;
   c.mpm.law = kind.law;
   c.mpm.material = kind.material;
   c.mpm.cells = kind.cells;
@@ -29,6 +31,7 @@ Case::Kind kind_of(const Case& c) {
           .grains = c.sample.grains,
           .model = c.experiment.model,
           .grain = c.grain,
+          .bpm = c.bpm,
           .law = c.mpm.law,
           .material = c.mpm.material,
           .cells = c.mpm.cells,

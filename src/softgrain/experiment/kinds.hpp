@@ -8,9 +8,9 @@ namespace softgrain {
 /// How many kinds of grains a case has: one, unless it lists them.
 inline int kinds_of(const Case& c) { return c.kinds.empty() ? 1 : static_cast<int>(c.kinds.size()); }
 
-/// The case with grains of its k-th kind alone: what `grain`, `mpm`, `sample` and `experiment.model` say is
-/// that kind's, and the number of grains too. Of a case of one kind that case itself. Of several, elastic and
-/// rigid ones, the case's own model is that of the elastic ones.
+/// The case with grains of its k-th kind alone: what `grain`, `bpm`, `mpm`, `sample` and `experiment.model`
+/// say is that kind's, and the number of grains too. Of a case of one kind that case itself. Of several,
+/// elastic and rigid ones, the case's own model is that of the elastic ones.
 Case case_of_kind(Case the_case, int kind);
 
 /// What a case of one kind says of it.

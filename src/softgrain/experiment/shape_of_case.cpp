@@ -65,6 +65,9 @@ double area_share(const Case& kind) {
       const OutlineCurve curve(kind.grain.outline);
       return curve.area() / (std::numbers::pi * curve.reach() * curve.reach());
     }
+    case ShapeOfGrain::surface:
+      if (kind.grain.surface.triangle.empty()) return 1;
+      return StarSurface(kind.grain.surface).volume() / (4 * std::numbers::pi / 3);
     default:
       return 1;
   }

@@ -13,7 +13,8 @@ namespace softgrain {
 /// ones that are too concave.
 std::shared_ptr<const Topology> grain_shape_of(const Case& kind);
 
-/// Area over that of the circle of its diameter, which contains it: 1 of a disk.
+/// Area over that of the circle of its diameter, which contains it, in space volume over that of the sphere:
+/// 1 of a disk.
 double area_share(const Case& kind);
 
 /// Of one grain between two walls: how it is turned [rad].

@@ -14,6 +14,9 @@ std::string not_yet(std::string_view what, std::string_view remedy) {
 
 /// Of grains that are not bonded.
 std::string not_yet_solid(const Case& c) {
+  if (c.contact.surface_energy > 0 || c.contact.wall_surface_energy > 0)
+    return not_yet("adhesion of elastic and rigid grains",
+                   "leave contact.surface_energy and contact.wall_surface_energy out");
   if (c.mpm.formulation == Formulation::updated_lagrangian)
     return not_yet("mpm.formulation \"updated_lagrangian\"", "write \"total_lagrangian\"");
   if (c.mpm.integrator == Integrator::backward_euler)
@@ -24,8 +27,12 @@ std::string not_yet_solid(const Case& c) {
         "write \"explicit\" or leave it out");
   for (int k = 0; k < kinds_of(c); ++k) {
     const Case kind = case_of_kind(c, k);
-    if (kind.grain.shape != ShapeOfGrain::disk)
-      return not_yet("grains other than spheres", "leave the shape out");
+    if (kind.grain.shape == ShapeOfGrain::surface && !is_rigid(kind))
+      return not_yet("elastic grains other than spheres",
+                     "write model = \"rigid\" for the grains of grain.surface, or leave that out");
+    if (kind.grain.shape != ShapeOfGrain::disk && kind.grain.shape != ShapeOfGrain::surface)
+      return not_yet("ellipses, polygons and outlines",
+                     "give rigid grains a grain.surface from an STL or PLY file, or leave the shape out");
     if (!is_rigid(kind) && law_choice(kind.mpm.law).flows() && kind.mpm.material.kinematic_modulus > 0)
       return not_yet("mpm.kinematic_modulus", "leave it out, and let mpm.hardening_modulus harden alone");
   }
@@ -47,8 +54,6 @@ std::string not_yet_in_space(const Case& c) {
   if (c.sample.places == Places::pour)
     return not_yet("sample.places \"pour\"", "leave it out: places are random");
   if (c.box.open_top) return not_yet("box.open_top", "leave it out: six walls hold the spheres");
-  if (c.contact.surface_energy > 0 || c.contact.wall_surface_energy > 0)
-    return not_yet("adhesion", "leave contact.surface_energy and contact.wall_surface_energy out");
   return is_bonded(c) ? "" : not_yet_solid(c);
 }
 

@@ -9,6 +9,7 @@
 #include "softgrain/experiment/solid_case.hpp"
 #include "softgrain/material/any_law.hpp"
 #include "softgrain/soft/elastic_grains.hpp"
+#include "softgrain/soft/rigid_surface.hpp"
 
 namespace softgrain {
 namespace {
@@ -44,13 +45,18 @@ SolidGrains solid_grains(const Case& c, std::vector<PlacementOf<3>> placed) {
   return {std::move(placed), std::move(materials)};
 }
 
-/// The grid of each kind; those of one resolution share it, rigid ones among themselves.
+/// The grid of each kind; spheres of one resolution share it, rigid ones among themselves.
 std::vector<std::shared_ptr<const SolidTopology>> solid_shapes(const Case& c) {
   std::map<std::pair<bool, int>, std::shared_ptr<const SolidTopology>> known;
   std::vector<std::shared_ptr<const SolidTopology>> shapes;
   for (int k = 0; k < kinds_of(c); ++k) {
     const Case kind = case_of_kind(c, k);
     const int cells = kind.mpm.cells;
+    if (kind.grain.shape == ShapeOfGrain::surface) {
+      shapes.push_back(
+          std::make_shared<const SolidTopology>(rigid_surface(StarSurface(kind.grain.surface), cells)));
+      continue;
+    }
     std::shared_ptr<const SolidTopology>& shape = known[{is_rigid(kind), cells}];
     if (!shape)
       shape = std::make_shared<const SolidTopology>(is_rigid(kind) ? rigid_ball(cells)

@@ -5,6 +5,7 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/io/case/case_value.hpp"
 #include "softgrain/io/case/outline_file.hpp"
+#include "softgrain/io/case/surface_file.hpp"
 
 namespace softgrain {
 
@@ -26,7 +27,12 @@ void CaseDraft::give(const Key& key, const std::string& name, const TomlValue& v
     Key named = key;
     named.name = name;
     const auto* file = std::get_if<std::string>(&value.content);
-    const bool names_a_file = file != nullptr && key.name == "grain.outline" && sources != nullptr;
+    const bool may_name_a_file = file != nullptr && sources != nullptr;
+    if (may_name_a_file && key.name == "grain.surface") {
+      the_case.grain.surface = surface_of_file(*file, origin, *this);
+      return;
+    }
+    const bool names_a_file = may_name_a_file && key.name == "grain.outline";
     assign(the_case, named, names_a_file ? outline_of_file(*file, origin, *this) : value);
   } catch (const UsageError& error) {
     if (value.at.line > 0) origin.at = value.at;

@@ -41,6 +41,8 @@ class CaseDraft {
 
   /// Was there any error about this key?
   bool is_valid(const std::string& key) const { return !invalid.contains(key); }
+  /// Is what it says of the shape of grains right, as far as a file says it?
+  bool has_shape() const { return is_valid("grain.outline") && is_valid("grain.surface"); }
 
  private:
   std::map<std::string, std::string> names_;  // under which keys were given in the file

@@ -47,7 +47,7 @@ class CaseReader {
       check_heights(draft_);
       forms_.finish_kinds();
       if (draft_.the_case.kinds.empty()) check_shape(draft_);
-      if (!draft_.is_valid("grain.outline")) throw CaseFileError(report(draft_.issues, sources_, sets_));
+      if (!draft_.has_shape()) throw CaseFileError(report(draft_.issues, sources_, sets_));
       draft_.the_case = complete_sample(draft_.the_case);
       pour_grains();
       take_quasi_static_speeds();
@@ -227,10 +227,10 @@ class CaseReader {
 
   void check_relations() {
     for (const Relation& relation : case_relations()) {
-      const auto is_invalid = [&](const std::string& key) { return !draft_.is_valid(key); };
-      if (std::any_of(relation.keys.begin(), relation.keys.end(), is_invalid)) continue;
-      if (!draft_.the_case.kinds.empty() && std::ranges::all_of(relation.keys, is_key_of_kind))
-        continue;  // looked at for each kind
+      if (!std::ranges::all_of(relation.keys, [&](auto& key) { return draft_.is_valid(key); })) continue;
+      const auto is_of_kind = [&](const std::string& key) { return is_key_of_kind(draft_.the_case, key); };
+      // looked at for each kind
+      if (!draft_.the_case.kinds.empty() && std::ranges::all_of(relation.keys, is_of_kind)) continue;
       const std::string message = relation.broken(draft_.the_case);
       if (!message.empty()) draft_.add(last_origin(relation.keys), message);
     }

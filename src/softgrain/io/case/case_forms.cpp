@@ -23,13 +23,14 @@ std::vector<FormKey> all_forms() {
   return {
 
       {"kind.name", Takes::text, {}, "name of the kind, for [[pair]], for --set kind.NAME.key=value and for the column kind of a sample's file; several kinds need one each"},
-      stands_for("kind.model", {"experiment.model"}, "model of these grains; elastic and rigid kinds mix"),
+      stands_for("kind.model", {"experiment.model"}, "model of these grains; elastic and rigid kinds mix, bonded ones among themselves"),
       stands_for("kind.number", {"sample.grains"}, "grains of this kind in the box"),
       number("kind.share", "", positive, "share of the area of sample.grains grains that this kind has, in proportion; all kinds have one, or all a number"),
-      stands_for("kind.shape", {"grain.shape"}, "shape of the undeformed grain; left out: a disk, or outline where one is given"),
+      stands_for("kind.shape", {"grain.shape"}, "shape of the undeformed grain; left out: a disk, or outline or surface where one is given"),
       stands_for("kind.aspect", {"grain.aspect"}, "long over short axis of an ellipse"),
       stands_for("kind.sides", {"grain.sides"}, "of a regular polygon"),
       stands_for("kind.outline", {"grain.outline"}, "of a shape of its own: a CSV file, or a list of points"),
+      stands_for("kind.surface", {"grain.surface"}, "of a shape of its own in space: an STL or PLY file"),
       stands_for("kind.density", {"grain.density"}, "density of the material"),
       stands_for("kind.diameter", {"sample.smallest_diameter", "sample.largest_diameter"}, "diameter of all grains of this kind; a table for a law of diameters"),
       stands_for("kind.diameter.distribution", {"sample.sizes"}, "law of the diameters; left out: list where there are values, lognormal where there is a median"),
@@ -140,7 +141,8 @@ const std::vector<TableOfKeys>& form_tables() {
       {"kind",
        "A kind of grains, instead of [grain], [sample] and the material's keys of [mpm] or [bpm]. Several "
        "kinds\n"
-       "(elastic and rigid grains in a box) mix in one sample; what [grain], [mpm] and [sample] say\n"
+       "(elastic and rigid grains, or bonded ones, in a box) mix in one sample; what [grain], [mpm], [bpm] "
+       "and [sample] say\n"
        "then holds for the kinds that do not say it themselves."},
       {"pair",
        "What acts between two kinds, or a kind and the walls, instead of [contact]; of several kinds\n"

@@ -15,6 +15,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Keys that act on one grain alone, which has no kinds.
+bool is_between_walls(const std::string& key) { return key == "bpm.attraction" || key == "bpm.force"; }
+
 /// Keys of a kind, each with the one key of the schema for which it stands. kind.model is that of all kinds,
 /// and kind.diameter stands for two that have keys of their own.
 const std::vector<FormKey>& written_keys() {
@@ -22,7 +25,7 @@ const std::vector<FormKey>& written_keys() {
     std::vector<FormKey> written;
     for (const FormKey& form : form_keys())
       if (form.name.starts_with("kind.") && form.takes == Takes::as_key && form.keys.size() == 1 &&
-          !form.keys.front().starts_with("bpm.") && form.name != "kind.model")
+          form.name != "kind.model" && !is_between_walls(form.keys.front()))
         written.push_back(form);
     return written;
   }();
@@ -38,7 +41,9 @@ bool is_of_shape(const std::string& key) {
 
 /// Does a kind have such a key?
 bool is_written(const Case& kind, const std::string& key) {
+  if (key == "grain.surface") return kind.grain.shape == ShapeOfGrain::surface;
   if (key == "grain.outline") return kind.grain.shape == ShapeOfGrain::outline;
+  if (key.starts_with(is_bonded(kind) ? "mpm." : "bpm.")) return false;
   if (is_rigid(kind)) return !key.starts_with("mpm.") || key == "mpm.cells";
   return !is_of_shape(key) || kind.grain.shape != ShapeOfGrain::disk;
 }
@@ -69,7 +74,8 @@ std::string side_of(const Case& c, int kind) {
 
 }  // namespace
 
-bool is_key_of_kind(const std::string& name) {
+bool is_key_of_kind(const Case& c, const std::string& name) {
+  if (name.starts_with(is_bonded(c) ? "mpm." : "bpm.")) return false;
   return std::ranges::any_of(written_keys(), [&](const FormKey& form) { return form.keys.front() == name; });
 }
 

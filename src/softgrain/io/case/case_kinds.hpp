@@ -5,8 +5,8 @@
 
 namespace softgrain {
 
-/// Does this key of the schema say what a [[kind]] of elastic grains says?
-bool is_key_of_kind(const std::string& name);
+/// Does this key of the schema say what a [[kind]] says, of grains as those of the case?
+bool is_key_of_kind(const Case& the_case, const std::string& name);
 
 /// Several kinds and their pairs as they stand in a file, in SI; "" where there is but one.
 std::string kinds_text(const Case& the_case);

@@ -225,9 +225,6 @@ std::string rigid_grain_alone(const Case& c) {
 
 std::string kinds_cannot(const Case& c) {
   if (c.kinds.empty()) return "";
-  if (is_bonded(c))
-    return "not yet: several [[kind]] of bonded grains come with a later version; today several kinds are "
-           "elastic or rigid grains: experiment.model \"mpm\" or \"rigid\"";
   return is_in_a_box(c)
              ? ""
              : "several [[kind]] need a box: experiment.loading \"compaction\" or another but \"diametral\"";
@@ -266,7 +263,8 @@ const std::vector<Relation>& case_relations() {
       {{"experiment.loading"}, stages_and_path_differ},
       {{"experiment.model", "experiment.loading"}, kinds_cannot},
       {{"experiment.model", "experiment.loading"}, rigid_grain_alone},
-      {{"grain.shape", "grain.outline", "grain.aspect", "grain.sides", "mpm.cells"}, shape_cannot},
+      {{"grain.shape", "grain.outline", "grain.surface", "grain.aspect", "grain.sides", "mpm.cells"},
+       shape_cannot},
       {{"experiment.loading", "loading.confining_stress", "loading.max_stress", "loading.hold",
         "loading.shear_rate"},
        path_incomplete},

@@ -44,6 +44,8 @@ Json value_schema(const Key& key) {
     return {{"anyOf", Json::array({{{"type", "string"}},
                                    {{"type", "array"},
                                     {"items", {{"type", "array"}, {"items", {{"type", "number"}}}}}}})}};
+  if (std::holds_alternative<MemberOf<TriangleMesh>>(key.member))
+    return {{"anyOf", Json::array({{{"type", "string"}}, {{"type", "array"}}})}};
   Json whole{{"type", "integer"}};
   add_bounds(whole, key.range);
   return whole;
@@ -160,6 +162,19 @@ constexpr std::string_view outline_files =
     "run\n"
     "keeps the points in its `case.toml`.\n";
 
+constexpr std::string_view surface_files =
+    "\n## The file of a surface\n\n"
+    "`grain.surface` and `kind.surface` name an STL or PLY file, text or binary, in any unit, with a closed "
+    "surface of "
+    "at\n"
+    "most 10 000 triangles. Each point of it must be seen from its centre of mass. The grain's diameter is "
+    "that of the "
+    "sphere\n"
+    "about that centre that holds it; its axes are those of the file before the grain is turned. The run "
+    "keeps "
+    "vertices and\n"
+    "triangles in its `case.toml`. What is wrong is told with the line of the file, or its byte.\n";
+
 constexpr std::string_view stages =
     "\nStages follow one another. Compression is positive, and strain counts from the start of the run. Of "
     "each\n"
@@ -221,8 +236,8 @@ std::string case_reference_page() {
                             written_value(Case{}, key), key.text);
       });
   add_forms_of(table_of_forms);
-  return text + std::string(sample_files) + std::string(outline_files) + reference_of_forms() +
-         std::string(stages);
+  return text + std::string(sample_files) + std::string(outline_files) + std::string(surface_files) +
+         reference_of_forms() + std::string(stages);
 }
 
 }  // namespace softgrain

@@ -105,7 +105,7 @@ std::string resolved_case_text(const Case& the_case) {
   std::string text = "# Resolved case: every default filled in, SI units.\n";
   for_each_key([&](const TableOfKeys& table) { text += fmt::format("\n[{}]\n", table.name); },
                [&](const Key& key) {
-                 if (!the_case.kinds.empty() && is_key_of_kind(key.name)) return;
+                 if (!the_case.kinds.empty() && is_key_of_kind(the_case, key.name)) return;
                  const std::string unit = si_unit_of(key);
                  text += fmt::format("{} = {}{}\n", key.short_name(), si_value(the_case, key),
                                      unit.empty() ? "" : "  # " + unit);

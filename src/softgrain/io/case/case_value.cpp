@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/io/case/list_text.hpp"
 #include "softgrain/io/case/suggest.hpp"
 #include "softgrain/io/case/units.hpp"
 
@@ -123,6 +124,35 @@ OutlinePoint read_outline_point(const Key& key, const TomlValue& value) {
   return {{numbers[0], numbers[1]}, numbers[2] == 1};
 }
 
+/// [[[x, y, z], ...], [[i, j, k], ...]], or [] for none.
+TriangleMesh read_mesh_lists(const Key& key, const TomlValue& value) {
+  const auto* lists = std::get_if<TomlValue::Array>(&value.content);
+  if (lists == nullptr) wrong_type(key, value);
+  TriangleMesh mesh;
+  if (lists->empty()) return mesh;
+  const auto rows = [&](std::size_t k) {
+    const auto* items = lists->size() == 2 ? std::get_if<TomlValue::Array>(&(*lists)[k].content) : nullptr;
+    if (items == nullptr) wrong_type(key, value);
+    std::vector<std::array<double, 3>> all;
+    for (const TomlValue& item : *items) {
+      const std::vector<double> row = read_row(key, item);
+      require(row.size() == 3, "{} takes three numbers for each vertex and each triangle; got {}", key.name,
+              shown_row(item, row));
+      all.push_back({row[0], row[1], row[2]});
+    }
+    return all;
+  };
+  for (const auto& x : rows(0)) mesh.vertex.push_back({x[0], x[1], x[2]});
+  const auto most = static_cast<double>(mesh.vertex.size());
+  for (const auto& t : rows(1)) {
+    for (const double v : t)
+      require(v >= 0 && v < most && v == std::floor(v),
+              "{}: a triangle names vertex {}, but there are {}, from 0 on", key.name, v, mesh.vertex.size());
+    mesh.triangle.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
+  }
+  return mesh;
+}
+
 struct Assign {
   Case& the_case;
   const Key& key;
@@ -159,6 +189,11 @@ struct Assign {
     for (const TomlValue& item : *items) points.push_back(read_outline_point(key, item));
     if (!points.empty()) OutlineCurve{points};  // raises what is wrong with it
     member(the_case) = std::move(points);
+  }
+  void operator()(MemberOf<TriangleMesh> member) const {
+    TriangleMesh mesh = read_mesh_lists(key, value);
+    if (!mesh.triangle.empty()) StarSurface{mesh};  // raises what is wrong with it
+    member(the_case) = std::move(mesh);
   }
   void operator()(MemberOf<std::vector<double>> member) const {
     if (!std::holds_alternative<TomlValue::Array>(value.content)) wrong_type(key, value);
@@ -205,20 +240,9 @@ std::string text_of(const Case& the_case, const Key& key, const WriteNumber& wri
       std::vector<std::string> items;
       for (const double item : value) items.push_back(write_number(item));
       return fmt::format("[{}]", fmt::join(items, ", "));
-    } else if constexpr (std::is_same_v<T, std::vector<PlacedGrain>>) {
-      std::string list;
-      for (const PlacedGrain& grain : value)
-        list +=
-            fmt::format("{}\n  [{}, {}, {}, {}{}]", list.empty() ? "" : ",", write_number(grain.centre[0]),
-                        write_number(grain.centre[1]), write_number(grain.radius), write_number(grain.angle),
-                        grain.kind == 0 ? "" : fmt::format(", {}", grain.kind));
-      return fmt::format("[{}{}]", list, list.empty() ? "" : "\n");
-    } else if constexpr (std::is_same_v<T, std::vector<OutlinePoint>>) {
-      std::string list;
-      for (const OutlinePoint& point : value)
-        list += fmt::format("{}\n  [{}, {}{}]", list.empty() ? "" : ",", write_number(point.x[0]),
-                            write_number(point.x[1]), point.corner ? ", 1" : "");
-      return fmt::format("[{}{}]", list, list.empty() ? "" : "\n");
+    } else if constexpr (std::is_same_v<T, std::vector<PlacedGrain>> ||
+                         std::is_same_v<T, std::vector<OutlinePoint>> || std::is_same_v<T, TriangleMesh>) {
+      return list_text(value, write_number);
     } else if constexpr (std::is_same_v<T, std::string_view>) {
       return fmt::format("\"{}\"", value);
     } else {
@@ -244,6 +268,8 @@ std::string kind_in_words(const Key& key) {
   if (std::holds_alternative<MemberOf<std::vector<PlacedGrain>>>(key.member)) return "a list of grains";
   if (std::holds_alternative<MemberOf<std::vector<OutlinePoint>>>(key.member))
     return "the name of a file or a list of points";
+  if (std::holds_alternative<MemberOf<TriangleMesh>>(key.member))
+    return "the name of a file, or lists of vertices and triangles";
   if (!std::holds_alternative<MemberOf<std::vector<double>>>(key.member)) return "a whole number";
   return key.unit.empty() ? "a list of plain numbers"
                           : fmt::format("a list, each {}", in_words(parse_unit(key.unit).dimension));

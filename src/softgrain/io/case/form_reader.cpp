@@ -267,10 +267,12 @@ void FormReader::imply_law_of_sizes() {
     draft_.the_case.sample.sizes = SizeLaw::lognormal;
 }
 
-/// A shape of one's own where an outline is given, and no word of it is said.
+/// A shape of one's own where an outline or a surface is given, and no word of it is said.
 void FormReader::imply_shape() {
   Case::Grain& grain = draft_.the_case.grain;
-  if (!draft_.origins.contains("grain.shape") && !grain.outline.empty()) grain.shape = ShapeOfGrain::outline;
+  if (draft_.origins.contains("grain.shape")) return;
+  if (!grain.outline.empty()) grain.shape = ShapeOfGrain::outline;
+  if (!grain.surface.triangle.empty()) grain.shape = ShapeOfGrain::surface;
 }
 
 void FormReader::finish_file() {

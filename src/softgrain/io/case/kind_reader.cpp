@@ -120,7 +120,8 @@ void FormReader::finish_kind(KindText& text) {
   reader.imply_law_of_sizes();
   reader.imply_shape();
   for (const Relation& relation : case_relations()) {
-    if (!draft.issues.empty() || !std::ranges::all_of(relation.keys, is_key_of_kind)) continue;
+    const auto is_of_kind = [&](const std::string& key) { return is_key_of_kind(draft.the_case, key); };
+    if (!draft.issues.empty() || !std::ranges::all_of(relation.keys, is_of_kind)) continue;
     const std::string message = relation.broken(draft.the_case);
     Origin at = text.at;
     for (const std::string& key : relation.keys)
@@ -128,7 +129,8 @@ void FormReader::finish_kind(KindText& text) {
     if (!message.empty()) draft.add(at, fmt::format("kind '{}': {}", text.name, message));
   }
   if (draft.issues.empty()) check_shape(draft);
-  if (!draft.is_valid("grain.outline")) draft_.invalid.insert("grain.outline");
+  for (const char* key : {"grain.outline", "grain.surface"})
+    if (!draft.is_valid(key)) draft_.invalid.insert(key);
   std::vector<std::string> in_vain;
   for (const auto& [name, origin] : draft.origins) {
     const Key& key = *find_key(name);
@@ -143,7 +145,7 @@ void FormReader::finish_kind(KindText& text) {
   c.kinds.push_back(kind_of(draft.the_case));
   Case::Kind& kind = c.kinds.back();
   kind.name = text.name;
-  if (kind.model == GrainModel::rigid) kind.law = {}, kind.material = {};
+  if (kind.model != GrainModel::mpm) kind.law = {}, kind.material = {};
   if (const auto said = draft.origins.find("experiment.model"); said != draft.origins.end())
     draft_.origins.insert(*said);
 }

@@ -67,10 +67,11 @@ std::vector<Key> all_keys() {
 
       KEY(grain.radius, "mm", positive(), "radius R of the grain", between_walls),
       KEY(grain.density, "kg/m^3", positive(), "density rho; the grain weighs rho pi R^2 per metre of depth"),
-      KEY(grain.shape, "", its_words(), "of the undeformed grain; all but a disk lie in the circle of the grain's diameter, about their centre of area; left out: outline where one is given", with_outlines),
+      KEY(grain.shape, "", its_words(), "of the undeformed grain; all but a disk lie in the circle of the grain's diameter, about their centre of area; left out: outline or surface where one is given", with_outlines),
       KEY(grain.aspect, "", from_to(1, 20), "long over short axis of an ellipse; of an elastic one at most 10", ellipses),
       KEY(grain.sides, "", from_to(3, 100), "of a regular polygon, at most 4 mpm.cells", polygons),
       KEY(grain.outline, "", anything(), "of the shape outline: a CSV file with the columns x, y, corner (below), from the folder of the case file; or its points [x, y], at a corner [x, y, 1]", outlines),
+      KEY(grain.surface, "", anything(), "of the shape surface, of rigid grains in space: an STL or PLY file, text or binary, from the folder of the case file, of a closed surface that is seen from its centre of mass; or its vertices [x, y, z] and triangles [i, j, k], as [[...], [...]]", surfaces),
       KEY(grain.angle, "deg", anything(), "by which one grain between two walls is turned, counter-clockwise; an ellipse lies along x, a polygon has a corner there", turned),
 
       KEY(bpm.primaries, "", from_to(fewest_primaries, 1e6),
@@ -109,11 +110,11 @@ std::vector<Key> all_keys() {
           "coefficient of friction mu between grains; never inside one: bpm.inner_friction", with_pairs),
       KEY(contact.wall_friction, "", at_least(0), "coefficient of friction mu against walls"),
       KEY(contact.surface_energy, "J/m^2", at_least(0),
-          "surface energy w of adhesion between grains: what it takes to part a unit of their surface; 0: they do not adhere", adhering_pairs),
+          "surface energy w of adhesion between grains: what it takes to part a unit of their surface; bpm: of the face that each pair of primaries stands for, as wide as the two radii together; 0: they do not adhere", adhering_pairs),
       KEY(contact.wall_surface_energy, "J/m^2", at_least(0), "the same between grains and walls", adhering),
       KEY(contact.adhesion_range, "um", at_least(0),
           "gap delta up to which surfaces that adhere attract each other, by a stress that falls from 2 w/delta to 0; auto: "
-          "so that the zone where they part spans three vertices of the outline", adhering, "auto"),
+          "so that the zone where they part spans three vertices of the outline; bpm: a quarter of the mean distance of touching primaries", adhering, "auto"),
       KEY(contact.restitution, "", from_to(0, 1), "Newton's coefficient of restitution e_n", with_bpm),
       KEY(contact.activation, "", its_words(),
           "when a contact is active: always, so that it may close within the step; or when it is closed at mid-step, or "

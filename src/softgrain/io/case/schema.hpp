@@ -35,7 +35,7 @@ struct WordMember {
 };
 using Member = std::variant<MemberOf<bool>, MemberOf<int>, MemberOf<std::int64_t>, MemberOf<double>,
                             WordMember, MemberOf<std::vector<double>>, MemberOf<std::vector<PlacedGrain>>,
-                            MemberOf<std::vector<OutlinePoint>>>;
+                            MemberOf<std::vector<OutlinePoint>>, MemberOf<TriangleMesh>>;
 
 /// One key of a case file. Its default is the value in Case{}.
 struct Key {

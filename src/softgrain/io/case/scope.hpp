@@ -34,6 +34,8 @@ inline constexpr Scope polygons{"on polygons",
                                 [](const Case& c) { return has_shape(c, ShapeOfGrain::polygon); }};
 inline constexpr Scope outlines{"on grains of shape \"outline\"",
                                 [](const Case& c) { return has_shape(c, ShapeOfGrain::outline); }};
+inline constexpr Scope surfaces{"on grains of shape \"surface\"",
+                                [](const Case& c) { return has_shape(c, ShapeOfGrain::surface); }};
 inline constexpr Scope turned{
     "on a grain between walls that is no disk",
     [](const Case& c) { return is_outlined(c) && !is_in_a_box(c) && c.grain.shape != ShapeOfGrain::disk; }};
@@ -58,10 +60,12 @@ inline bool is_implicit(const Case& c) {
 inline constexpr Scope implicit{"on implicit mpm", is_implicit};
 inline constexpr Scope with_pairs{"between the grains of a box",
                                   [](const Case& c) { return is_in_a_box(c) && c.sample.grains > 1; }};
-inline bool can_adhere(const Case& c) { return is_total_lagrangian(c) && !is_in_space(c); }
-inline constexpr Scope adhering{"on outlines in the plane (total_lagrangian mpm, rigid)", can_adhere};
-inline constexpr Scope adhering_pairs{"between outlines in a box in the plane (total_lagrangian mpm, rigid)",
-                                      [](const Case& c) { return can_adhere(c) && with_pairs.covers(c); }};
+inline bool can_adhere(const Case& c) { return is_bpm(c) || (is_total_lagrangian(c) && !is_in_space(c)); }
+inline constexpr Scope adhering{"on bpm and on outlines in the plane (total_lagrangian mpm, rigid)",
+                                can_adhere};
+inline constexpr Scope adhering_pairs{
+    "between grains of bpm, or outlines in the plane (total_lagrangian mpm, rigid), in a box",
+    [](const Case& c) { return can_adhere(c) && with_pairs.covers(c); }};
 inline bool is_placed(const Case& c) { return is_in_a_box(c) && !c.sample.placed.empty(); }
 inline bool is_random(const Case& c) {
   return is_in_a_box(c) && (c.sample.placed.empty() || c.sample.places == Places::pour);

@@ -21,6 +21,11 @@ std::string shape_cannot(const Case& c) {
         "not yet: bonded grains of shape \"{}\" come with a later version; today these are disks", shape);
   if (is_elastic(c) && c.mpm.formulation == Formulation::updated_lagrangian)
     return fmt::format("mpm.formulation \"updated_lagrangian\" takes disks, not grain.shape \"{}\"", shape);
+  if (c.grain.shape == ShapeOfGrain::surface && !is_in_space(c))
+    return "grain.surface and grain.shape \"surface\" belong to experiment.dimension = 3: in the plane give "
+           "grain.outline";
+  if (c.grain.shape == ShapeOfGrain::surface && c.grain.surface.triangle.empty())
+    return "grain.shape \"surface\" needs grain.surface: an STL or PLY file";
   if (c.grain.shape == ShapeOfGrain::outline && c.grain.outline.empty())
     return "grain.shape \"outline\" needs grain.outline: a CSV file with the columns x, y";
   if (is_elastic(c) && c.grain.shape == ShapeOfGrain::ellipse && c.grain.aspect > longest_soft)
@@ -35,9 +40,10 @@ std::string shape_cannot(const Case& c) {
 
 void check_shape(CaseDraft& draft) {
   const Case& c = draft.the_case;
-  if (c.grain.shape == ShapeOfGrain::disk || !draft.is_valid("grain.outline")) return;
+  if (c.grain.shape == ShapeOfGrain::disk || !draft.has_shape()) return;
   Origin origin;
-  for (const char* key : {"grain.shape", "grain.outline", "grain.aspect", "grain.sides", "mpm.cells"})
+  for (const char* key :
+       {"grain.shape", "grain.outline", "grain.surface", "grain.aspect", "grain.sides", "mpm.cells"})
     if (const auto given = draft.origins.find(key); given != draft.origins.end())
       origin = std::max(origin, given->second);
   const auto refuse = [&](const std::string& message) {

@@ -32,7 +32,8 @@ template <>
 std::span<const Word<ShapeOfGrain>> words_of() {
   static constexpr std::array words{Word{ShapeOfGrain::disk, "disk"}, Word{ShapeOfGrain::ellipse, "ellipse"},
                                     Word{ShapeOfGrain::polygon, "polygon"},
-                                    Word{ShapeOfGrain::outline, "outline"}};
+                                    Word{ShapeOfGrain::outline, "outline"},
+                                    Word{ShapeOfGrain::surface, "surface"}};
   return words;
 }
 

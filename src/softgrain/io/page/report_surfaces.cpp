@@ -202,7 +202,11 @@ ReportFrame frame_of_surfaces(const Scene& scene) {
       add_field(frame, s, name, field_of(found->second));
   if (const auto kind = scene.particles.find("kind"); kind != scene.particles.end()) {
     const auto& kinds = std::get<std::vector<std::int64_t>>(kind->second.values);
-    frame.columns["grain.kind"] = FrameColumn(kinds.begin(), kinds.end());
+    const auto& grain = std::get<std::vector<std::int64_t>>(scene.particles.at("grain").values);
+    FrameColumn of_grain(centre.size());  // bonded grains have it by primary
+    for (std::size_t i = 0; i < kinds.size(); ++i)
+      of_grain[static_cast<std::size_t>(grain[i])] = static_cast<float>(kinds[i]);
+    frame.columns["grain.kind"] = std::move(of_grain);
   }
   const auto walls = scene.surface.find("walls");
   const auto corners = walls == scene.surface.end() ? std::vector<double>{}
