@@ -40,7 +40,8 @@ test::CaseInFolder with_stone(const std::string& mesh) { return {stones, "stone.
 
 }  // namespace
 
-TEST_CASE("a kind of rigid grains takes its surface from a file, and the resolved case needs the file no more") {
+TEST_CASE(
+    "a kind of rigid grains takes its surface from a file, and the resolved case needs the file no more") {
   const Case c = with_stone(test::text_stl(test::cube_mesh(3))).read();
   REQUIRE(c.kinds.size() == 2);
   CHECK(c.kinds[0].grain.shape == ShapeOfGrain::disk);
@@ -66,7 +67,8 @@ TEST_CASE("a surface that cannot be is refused with file, place and remedy") {
   CHECK(mentions(with_stone("nothing").refusal(), "stone.stl: line 1: neither STL"));
   CHECK(mentions(with_stone("").refusal({"kind.stone.surface=missing.stl"}), "missing.stl"));
   const test::CaseInFolder cube = with_stone(test::text_stl(test::cube_mesh(3)));
-  CHECK(mentions(cube.refusal({"kind.stone.model=mpm"}), "not yet with experiment.dimension = 3: elastic grains"));
+  CHECK(mentions(cube.refusal({"kind.stone.model=mpm"}),
+                 "not yet with experiment.dimension = 3: elastic grains"));
   CHECK(mentions(cube.refusal({"experiment.dimension=2"}), "belong to experiment.dimension = 3"));
   CHECK(mentions(cube.refusal({"kind.ball.shape=ellipse"}), "ellipses, polygons and outlines"));
   CHECK(mentions(cube.refusal({"kind.ball.shape=surface"}), "needs grain.surface"));
