@@ -17,7 +17,6 @@ struct LaterKey {
   std::string_view name, today;
 };
 constexpr std::array later_keys{
-    LaterKey{"kind.surface", "grains are disks"},
     LaterKey{"pair.restitution", "contact.restitution holds for all pairs"},
     LaterKey{"pair.adhesion", "pair.surface_energy makes grains and walls adhere"},
     LaterKey{"box.die_friction", "a [[pair]] between a kind and \"wall\" holds for all walls"},

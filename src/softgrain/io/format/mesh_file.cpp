@@ -87,7 +87,8 @@ bool is_binary_stl(std::string_view bytes) {
   if (bytes.size() < stl_header) return false;
   const std::size_t count = little_endian(bytes, 80);
   if (bytes.size() == stl_header + stl_triangle * count) return true;
-  return !bytes.starts_with("solid");
+  constexpr std::size_t begin = 1000;  // of a text, which has no zeros
+  return !bytes.starts_with("solid") || bytes.substr(0, begin).find('\0') != std::string_view::npos;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "softgrain/experiment/create.hpp"
+#include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/shape_of_case.hpp"
 #include "softgrain/io/case/case_text.hpp"
 #include "support/case_in_folder.hpp"
