@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "softgrain/contact/adhesive_contacts.hpp"
 #include "softgrain/core/error.hpp"
@@ -92,7 +93,7 @@ template <int Dim>
 void ExplicitStep<Dim>::look_at_cells(double dt) {
   const double longest = longest_stable_step(grains, options.damping_share);
   const double change = std::abs(longest - stable.longest);
-  stable.longest = longest;
+  stable.longest = std::min(longest, std::numeric_limits<double>::max());  // of rigid grains, as a number
   const double margin = longest - dt / sub_steps(dt);
   if (change > much * margin)
     stable.between_looks = std::max(fewest_between_looks, stable.between_looks / 2);

@@ -74,3 +74,17 @@ TEST_CASE("a surface that cannot be is refused with file, place and remedy") {
   CHECK(mentions(cube.refusal({"kind.ball.shape=ellipse"}), "ellipses, polygons and outlines"));
   CHECK(mentions(cube.refusal({"kind.ball.shape=surface"}), "needs grain.surface"));
 }
+
+TEST_CASE("a run of rigid grains alone goes on from a checkpoint with the same bits") {
+  const test::CaseInFolder folder = with_stone(test::text_stl(test::cube_mesh(3)));
+  const Case c =
+      folder.read({"kind.ball.model=rigid", "loading.wall_velocity=0.5 m/s", "contact.friction=0.3"});
+  SimulationOf<3> whole = test::solid_simulation_of(c), second = test::solid_simulation_of(c);
+  for (int k = 0; k < 6; ++k) whole.step();
+  second.restore(whole.checkpoint());
+  for (int k = 0; k < 6; ++k) whole.step(), second.step();
+  for (const auto& [name, array] : whole.checkpoint().arrays) {
+    CAPTURE(name);
+    CHECK(array.values == second.checkpoint().arrays.at(name).values);
+  }
+}
