@@ -31,7 +31,7 @@ std::string not_yet_solid(const Case& c) {
       return not_yet("elastic grains other than spheres",
                      "write model = \"rigid\" for the grains of grain.surface, or leave that out");
     if (kind.grain.shape != ShapeOfGrain::disk && kind.grain.shape != ShapeOfGrain::surface)
-      return not_yet("ellipses, polygons and outlines",
+      return not_yet("grains other than spheres (ellipses, polygons and outlines)",
                      "give rigid grains a grain.surface from an STL or PLY file, or leave the shape out");
     if (!is_rigid(kind) && law_choice(kind.mpm.law).flows() && kind.mpm.material.kinematic_modulus > 0)
       return not_yet("mpm.kinematic_modulus", "leave it out, and let mpm.hardening_modulus harden alone");
