@@ -71,7 +71,7 @@ std::vector<Key> all_keys() {
       KEY(grain.aspect, "", from_to(1, 20), "long over short axis of an ellipse; of an elastic one at most 10", ellipses),
       KEY(grain.sides, "", from_to(3, 100), "of a regular polygon, at most 4 mpm.cells", polygons),
       KEY(grain.outline, "", anything(), "of the shape outline: a CSV file with the columns x, y, corner (below), from the folder of the case file; or its points [x, y], at a corner [x, y, 1]", outlines),
-      KEY(grain.surface, "", anything(), "of the shape surface, of rigid grains in space: an STL or PLY file, text or binary, from the folder of the case file, of a closed surface that is seen from its centre of mass; or its vertices [x, y, z] and triangles [i, j, k], as [[...], [...]]", surfaces),
+      KEY(grain.surface, "", anything(), "of rigid grains in space, a closed surface that is seen from its centre of mass: an STL or PLY file beside the case file; or vertices [x, y, z] and triangles [i, j, k], as [[...], [...]]", surfaces),
       KEY(grain.angle, "deg", anything(), "by which one grain between two walls is turned, counter-clockwise; an ellipse lies along x, a polygon has a corner there", turned),
 
       KEY(bpm.primaries, "", from_to(fewest_primaries, 1e6),
@@ -114,7 +114,7 @@ std::vector<Key> all_keys() {
       KEY(contact.wall_surface_energy, "J/m^2", at_least(0), "the same between grains and walls", adhering),
       KEY(contact.adhesion_range, "um", at_least(0),
           "gap delta up to which surfaces that adhere attract each other, by a stress that falls from 2 w/delta to 0; auto: "
-          "so that the zone where they part spans three vertices of the outline; bpm: a quarter of the mean distance of touching primaries", adhering, "auto"),
+          "so that the zone of parting spans three vertices; bpm: a quarter of the mean distance of primaries", adhering, "auto"),
       KEY(contact.restitution, "", from_to(0, 1), "Newton's coefficient of restitution e_n", with_bpm),
       KEY(contact.activation, "", its_words(),
           "when a contact is active: always, so that it may close within the step; or when it is closed at mid-step, or "
