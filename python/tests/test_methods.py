@@ -140,7 +140,7 @@ report = false
         run.case["mpm"] |= {"law": "von_mises", "yield_stress": 2e5, "viscosity": 50.0, "c20": 1.0}
         text, keys = paragraph(run, facts_of(run))
         self.assertIn("an elastic-plastic (von Mises) material with E = 10 MPa, nu = 0.45, yield stress 200 kPa, viscosity 50 Pa s.", text)
-        self.assertNotIn("c20", text)
+        self.assertNotIn(" c20", text)
         run.case["mpm"] |= {"law": "prony", "relaxation_share_1": 0.5, "relaxation_time_1": 2e-3}
         text, keys = paragraph(run, facts_of(run))
         self.assertIn("relaxation share 1 0.5, relaxation time 1 2 ms.", text)

@@ -76,10 +76,12 @@ std::vector<int> counts_in_proportion(const std::vector<double>& proportions, in
 }
 
 double DiameterLaw::least() const {
-  return law == SizeLaw::list ? *std::min_element(diameters.begin(), diameters.end()) : smallest;
+  return law == SizeLaw::list && !diameters.empty() ? *std::min_element(diameters.begin(), diameters.end())
+                                                    : smallest;
 }
 double DiameterLaw::greatest() const {
-  return law == SizeLaw::list ? *std::max_element(diameters.begin(), diameters.end()) : largest;
+  return law == SizeLaw::list && !diameters.empty() ? *std::max_element(diameters.begin(), diameters.end())
+                                                    : largest;
 }
 
 void check(const DiameterLaw& law) {

@@ -20,8 +20,9 @@ struct DiameterLaw {
   std::vector<double> diameters{};             ///< [m] of list
   std::vector<double> numbers{};               ///< how many of each diameter of list, in proportion
 
-  double least() const;     ///< the smallest diameter that it gives [m]
-  double greatest() const;  ///< the largest [m]
+  /// The smallest diameter that it gives [m]; of a list without any, which `check` refuses, `smallest`.
+  double least() const;
+  double greatest() const;  ///< the largest [m], likewise
 };
 
 /// Raises UsageError for parameters that are no law: sizes that are not positive or out of order, cut-offs

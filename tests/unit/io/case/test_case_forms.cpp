@@ -90,6 +90,10 @@ TEST_CASE("laws of diameters are implied by what is given, and shares are of are
   CHECK(mentions(refusal(box + "[[kind]]\ndiameter = { median = '9 mm' }\n"),
                  "case.toml:5:14: error: sample.smallest_diameter and sample.largest_diameter must enclose"));
   CHECK(mentions(refusal(box + "[sample]\nsizes = 'list'\n"), "needs sample.diameters, as in"));
+  for (const std::string model : {"bpm", "mpm"})
+    CHECK(mentions(refusal("[experiment]\nloading = 'compaction'\nmodel = '" + model +
+                           "'\n[contact]\nsurface_energy = 1\n[sample]\nsizes = 'list'\n"),
+                   "needs sample.diameters, as in"));
   CHECK(mentions(refusal(box + "[sample]\nsizes = 'list'\ndiameters = [1]\nshares = [1]\nnumbers = [1]\n"),
                  "both say how many grains"));
   CHECK(mentions(refusal(box + "[sample]\nsizes = 'list'\ndiameters = [1]\nnumbers = [1, 2]\n"),
@@ -124,9 +128,10 @@ TEST_CASE("mistakes in the long form are told with line, column and remedy") {
       refusal("[[kind]]\nlaw = { young_modulus = '5 mm' }\n"),
       "case.toml:2:25: error: kind.law.young_modulus: unit 'mm' has the wrong dimension for a stress"));
   CHECK(mentions(refusal("[[kind]]\nlaw = 'hencky'\n"), "'kind.law' is a table"));
-  CHECK(mentions(refusal("[[kind]]\nshape = 'dsk'\n"),
-                 "kind.shape takes one of \"disk\", \"ellipse\", \"polygon\", \"outline\", got 'dsk'; did "
-                 "you mean 'disk'?"));
+  CHECK(mentions(
+      refusal("[[kind]]\nshape = 'dsk'\n"),
+      "kind.shape takes one of \"disk\", \"ellipse\", \"polygon\", \"outline\", \"surface\", got 'dsk'; did "
+      "you mean 'disk'?"));
   CHECK(mentions(refusal("[[kind]]\nname = 'wall'\n"), "\"wall\" is taken"));
   CHECK(mentions(refusal("[[kind]]\nshare = 0.7\n"),
                  "case.toml:2:1: error: kind.share = 0.7: there is only one"));

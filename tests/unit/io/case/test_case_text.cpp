@@ -143,7 +143,7 @@ TEST_CASE("the JSON Schema knows every key of a case, and no other") {
   const auto& kind = schema["properties"]["kind"]["items"]["properties"];
   CHECK(kind["law"]["properties"]["young_modulus"]["anyOf"][0]["exclusiveMinimum"] == 0);
   CHECK(kind["diameter"]["anyOf"][1]["properties"]["median"].contains("anyOf"));  // a length, or a table
-  CHECK(kind["shape"]["enum"] == nlohmann::json::array({"disk", "ellipse", "polygon", "outline"}));
+  CHECK(kind["shape"]["enum"] == nlohmann::json::array({"disk", "ellipse", "polygon", "outline", "surface"}));
 }
 
 TEST_CASE("the committed reference page is what the program writes") {

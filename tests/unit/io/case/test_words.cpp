@@ -29,7 +29,7 @@ void check_words(Enum last) {
 TEST_CASE("every choice of a case has its own word, which leads back to it") {
   check_words(LoadingPath::stages);
   check_words(GrainModel::rigid);
-  check_words(ShapeOfGrain::outline);
+  check_words(ShapeOfGrain::surface);
   check_words(EqualPrimaries::size);
   check_words(MaterialLaw::prony);
   check_words(Integrator::symplectic_euler);
