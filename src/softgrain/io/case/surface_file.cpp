@@ -37,7 +37,7 @@ TriangleMesh surface_of_file(const std::string& name, Origin origin, CaseDraft& 
   try {
     MeshText text = read_mesh(bytes_of(path));
     try {
-      StarSurface{text.mesh};
+      const StarSurface closed(text.mesh);  // says what is wrong with it
       return std::move(text.mesh);
     } catch (const MeshFault& fault) {
       throw UsageError(
