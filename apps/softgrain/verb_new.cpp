@@ -42,7 +42,7 @@ void write_new_case(const NewOptions& options) {
   if (failed)
     throw IoError(fmt::format("cannot make the directory {}: {}", options.directory, failed.message()));
   write_file(path,
-             commented_case_text(start.content, options.all ? Keys::all : Keys::that_act, start.advice));
+             commented_case_text(start.content(), options.all ? Keys::all : Keys::that_act, start.advice));
   write_file(path.parent_path() / "case.schema.json", case_json_schema());
   fmt::print("{}\n", path.string());
 }

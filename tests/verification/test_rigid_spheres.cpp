@@ -6,11 +6,15 @@
 #include <memory>
 #include <vector>
 
+#include "support/rigid_solids.hpp"
 #include "support/solid_grains.hpp"
 
 // Rigid spheres, alone and against elastic ones, by closed forms of mechanics.
 
 using namespace softgrain;
+using test::angular_momentum;
+using test::Twist;
+using test::twist_of;
 
 namespace {
 
@@ -23,31 +27,10 @@ constexpr double density = 2;
 const SolverOptions exact{.max_sweeps = 500, .tolerance = 1e-15, .relaxation = 1.2};
 
 SolidGrains spheres(std::vector<PlacementOf<3>> placed) {
-  return {std::move(placed), {GrainMaterial{.law = {}, .density = density, .rigid = true}}};
+  return {std::move(placed), {test::rigid_material(density)}};
 }
 
 double mass_of(double R) { return density * 4 * 3.14159265358979 / 3 * R * R * R; }
-
-/// v_c and omega of a grain.
-struct Twist {
-  Vec<3> velocity, spin;
-};
-Twist twist_of(const SolidGrains& grains, int grain) {
-  const auto [batch, lane] = grains.batch_of(grain);
-  const RigidTwistOf<3> all = rigid_twist(grains, *batch, batch->position, batch->velocity);
-  return {lane_of(all.velocity, lane), lane_of(all.spin, lane)};
-}
-
-/// sum of x x m v + I omega over all grains, about the origin.
-Vec<3> angular_momentum(const SolidGrains& grains) {
-  Vec<3> sum;
-  for (const SolidBatch& batch : grains.batches)
-    for (int i = 0; i < batch.topology->grid.nodes(); ++i)
-      for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
-        sum += grains.node_mass(batch, i)[lane] *
-               cross(lane_of(batch.position[i], lane), lane_of(batch.velocity[i], lane));
-  return sum;
-}
 
 }  // namespace
 

@@ -7,11 +7,15 @@
 
 #include "softgrain/soft/rigid_surface.hpp"
 #include "support/meshes.hpp"
+#include "support/rigid_solids.hpp"
 #include "support/solid_grains.hpp"
 
 // Rigid grains in space with the surface of a mesh, by closed forms of mechanics.
 
 using namespace softgrain;
+using test::angular_momentum;
+using test::Twist;
+using test::twist_of;
 
 namespace {
 
@@ -35,29 +39,11 @@ const Shape& ellipsoid() {
 }
 
 SolidGrains rigid(std::vector<PlacementOf<3>> placed) {
-  return {std::move(placed), {GrainMaterial{.law = {}, .density = density, .rigid = true}}};
+  return {std::move(placed), {test::rigid_material(density)}};
 }
 
-struct Twist {
-  Vec<3> velocity, spin;
-};
-Twist twist_of(const SolidGrains& grains, int grain) {
-  const auto [batch, lane] = grains.batch_of(grain);
-  const RigidTwistOf<3> all = rigid_twist(grains, *batch, batch->position, batch->velocity);
-  return {lane_of(all.velocity, lane), lane_of(all.spin, lane)};
-}
 Vec<3> centre_of(const SolidGrains& grains, int grain) {
   return grains.node_position(grain, grains.topology(grain).grid.nodes() - 1);
-}
-
-Vec<3> angular_momentum(const SolidGrains& grains) {
-  Vec<3> sum;
-  for (const SolidBatch& batch : grains.batches)
-    for (int i = 0; i < batch.topology->grid.nodes(); ++i)
-      for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
-        sum += grains.node_mass(batch, i)[lane] *
-               cross(lane_of(batch.position[i], lane), lane_of(batch.velocity[i], lane));
-  return sum;
 }
 
 void set_twist(SolidGrains& grains, const Twist& twist) {

@@ -37,6 +37,17 @@ Place place_of(const LatticeContact& c) { return {c.grain, c.other, c.wall, c.ve
 
 }  // namespace
 
+/// Does of_grain(g) succeed for all? If not, remembers the first grain for which it fails.
+template <class Work>
+bool UpdatedLagrangianDynamics::all_grains(const Work& of_grain) {
+  std::vector<char> fine(grains.size());
+  parallel_for(static_cast<int>(grains.size()), [&](int g) { fine[g] = static_cast<char>(of_grain(g)); });
+  const auto bad = std::find(fine.begin(), fine.end(), 0);
+  if (bad == fine.end()) return true;
+  failed_grain_ = static_cast<int>(bad - fine.begin());
+  return false;
+}
+
 SoftStepReport UpdatedLagrangianDynamics::implicit_step(double dt) {
   SoftStepReport report;
   std::vector<Vec<2>> felt(box.walls.size());
@@ -160,14 +171,9 @@ UpdatedLagrangianDynamics::Failure UpdatedLagrangianDynamics::solve_nodes(double
 
 /// F of all points at the end of the step, from the nodes' velocities as they are.
 UpdatedLagrangianDynamics::Failure UpdatedLagrangianDynamics::strain_all(double dt) {
-  std::vector<char> fine(grains.size());
-  parallel_for(static_cast<int>(grains.size()), [&](int g) {
-    fine[g] = static_cast<char>(strained(lattice_, g, grains[g], stencil_[g], dt, end_F_[g]));
-  });
-  const auto bad = std::find(fine.begin(), fine.end(), 0);
-  if (bad == fine.end()) return Failure::none;
-  failed_grain_ = static_cast<int>(bad - fine.begin());
-  return Failure::inverted_point;
+  const bool all =
+      all_grains([&](int g) { return strained(lattice_, g, grains[g], stencil_[g], dt, end_F_[g]); });
+  return all ? Failure::none : Failure::inverted_point;
 }
 
 /// r_i = m_i (v_i* - v_i)/dt + f_i, v* the flight.
@@ -182,14 +188,9 @@ void UpdatedLagrangianDynamics::find_residual(double dt) {
 
 UpdatedLagrangianDynamics::Failure UpdatedLagrangianDynamics::factor(double dt, SoftStepReport& report) {
   report.factorisations += static_cast<int>(grains.size());
-  std::vector<char> fine(grains.size());
-  parallel_for(static_cast<int>(grains.size()), [&](int g) {
-    fine[g] = static_cast<char>(equations_[g].factor(lattice_, grains[g], stencil_[g], end_F_[g], law, dt));
-  });
-  const auto bad = std::find(fine.begin(), fine.end(), 0);
-  if (bad == fine.end()) return Failure::none;
-  failed_grain_ = static_cast<int>(bad - fine.begin());
-  return Failure::indefinite_matrix;
+  const bool all = all_grains(
+      [&](int g) { return equations_[g].factor(lattice_, grains[g], stencil_[g], end_F_[g], law, dt); });
+  return all ? Failure::none : Failure::indefinite_matrix;
 }
 
 /// x <- A^-1 x of all grains, by nodes; 0 where there is no mass.

@@ -97,6 +97,8 @@ class UpdatedLagrangianDynamics {
   Failure try_step(double dt, SoftStepReport& report);
   void begin_implicit(double dt);
   Failure solve_nodes(double dt, SoftStepReport& report);
+  template <class Work>
+  bool all_grains(const Work& of_grain);
   Failure strain_all(double dt);
   void find_residual(double dt);
   Failure factor(double dt, SoftStepReport& report);

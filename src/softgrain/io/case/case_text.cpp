@@ -144,18 +144,20 @@ std::string commented_case_text(const Case& the_case, Keys keys, std::string_vie
 
 const std::vector<CaseTemplate>& case_templates() {
   static const std::vector<CaseTemplate> templates{
-      {"diametral-bpm", "one grain of rigid primary particles between two walls", diametral(GrainModel::bpm)},
-      {"diametral-mpm", "one elastic grain between two walls", diametral(GrainModel::mpm)},
+      {"diametral-bpm", "one grain of rigid primary particles between two walls",
+       [] { return diametral(GrainModel::bpm); }},
+      {"diametral-mpm", "one elastic grain between two walls", [] { return diametral(GrainModel::mpm); }},
       {"compaction-bpm", "25 grains of 200 primary particles in a box whose top wall comes down",
-       compaction(GrainModel::bpm), std::string(more_grains)},
-      {"compaction-mpm", "25 elastic grains in a box whose top wall comes down", compaction(GrainModel::mpm),
-       std::string(more_grains)},
+       [] { return compaction(GrainModel::bpm); }, std::string(more_grains)},
+      {"compaction-mpm", "25 elastic grains in a box whose top wall comes down",
+       [] { return compaction(GrainModel::mpm); }, std::string(more_grains)},
       {"shear-mpm", "25 elastic grains in a periodic cell: compressed to a stress, then sheared under it",
-       shear()},
-      {"die-mpm", "25 elastic grains in a die: pressed to a stress, held, unloaded, ejected", die(false)},
-      {"tablet-mpm", "the same of plastic grains, which stay dense: a tablet", die(true)},
-      {"sphere-mpm", "one elastic sphere between two walls, in space", sphere()},
-      {"spheres-mpm", "27 elastic spheres in a box whose six walls come in", spheres()},
+       shear},
+      {"die-mpm", "25 elastic grains in a die: pressed to a stress, held, unloaded, ejected",
+       [] { return die(false); }},
+      {"tablet-mpm", "the same of plastic grains, which stay dense: a tablet", [] { return die(true); }},
+      {"sphere-mpm", "one elastic sphere between two walls, in space", sphere},
+      {"spheres-mpm", "27 elastic spheres in a box whose six walls come in", spheres},
   };
   return templates;
 }

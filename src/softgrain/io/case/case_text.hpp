@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,8 +25,8 @@ std::string commented_case_text(const Case& the_case, Keys keys, std::string_vie
 struct CaseTemplate {
   std::string name;
   std::string text;
-  Case content;
-  std::string advice{};  ///< lines of a comment on what to change first
+  std::function<Case()> content;  ///< made when it is asked for: the program lists templates at each start
+  std::string advice{};           ///< lines of a comment on what to change first
 };
 const std::vector<CaseTemplate>& case_templates();
 

@@ -71,7 +71,8 @@ TEST_CASE("the commented case reads back bit for bit") {
 
 TEST_CASE("every template is a valid case") {
   for (const CaseTemplate& start : case_templates())
-    check_equal(parse_case(commented_case_text(start.content, Keys::that_act), start.name), start.content);
+    check_equal(parse_case(commented_case_text(start.content(), Keys::that_act), start.name),
+                start.content());
 }
 
 TEST_CASE("a resolved case with placed grains reads back bit for bit") {
@@ -86,23 +87,23 @@ TEST_CASE("a resolved case with placed grains reads back bit for bit") {
 TEST_CASE("a new case has only the keys that act in it, unless all are asked for") {
   for (const CaseTemplate& start : case_templates()) {
     CAPTURE(start.name);
-    const std::string some = commented_case_text(start.content, Keys::that_act);
-    const std::string all = commented_case_text(start.content, Keys::all);
+    const std::string some = commented_case_text(start.content(), Keys::that_act);
+    const std::string all = commented_case_text(start.content(), Keys::all);
     CHECK(some.starts_with("#:schema ./case.schema.json\n"));
     for (const Key& key : case_keys()) {
-      const std::string line = "\n" + key.short_name() + " = " + written_value(start.content, key) + "\n";
+      const std::string line = "\n" + key.short_name() + " = " + written_value(start.content(), key) + "\n";
       CHECK_MESSAGE(all.find(line) != std::string::npos, key.name);
-      if (key.acts.covers(start.content)) CHECK_MESSAGE(some.find(line) != std::string::npos, key.name);
+      if (key.acts.covers(start.content())) CHECK_MESSAGE(some.find(line) != std::string::npos, key.name);
     }
     CHECK(some.size() < all.size());
-    const bool bonded = start.content.experiment.model == GrainModel::bpm;
+    const bool bonded = start.content().experiment.model == GrainModel::bpm;
     CHECK((some.find("\n[bpm]\n") != std::string::npos) == bonded);
     CHECK((some.find("\n[mpm]\n") == std::string::npos) == bonded);
   }
 }
 
 TEST_CASE("the commented case is written as people write it") {
-  const std::string text = commented_case_text(case_templates().front().content, Keys::that_act);
+  const std::string text = commented_case_text(case_templates().front().content(), Keys::that_act);
   CHECK(text.find("radius = \"5 mm\"\n") != std::string::npos);
   CHECK(text.find("attraction = \"100 N/m\"\n") != std::string::npos);
   CHECK(text.find("unload_at = [0.1, 0.3]\n") != std::string::npos);

@@ -100,8 +100,8 @@ TEST_CASE("a note names keys that do nothing, and where they would act") {
 
 TEST_CASE("no template and no resolved case gives a key without effect") {
   for (const CaseTemplate& start : case_templates()) {
-    CHECK(parse_case_with_notes(commented_case_text(start.content, Keys::all), start.name)
+    CHECK(parse_case_with_notes(commented_case_text(start.content(), Keys::all), start.name)
               .without_effect.empty());
-    CHECK(parse_case_with_notes(resolved_case_text(start.content), start.name).without_effect.empty());
+    CHECK(parse_case_with_notes(resolved_case_text(start.content()), start.name).without_effect.empty());
   }
 }
