@@ -1,6 +1,9 @@
 # softgrain_join(TARGET LINES SOURCE...): the sources are compiled in joints of at most LINES lines
-# (tools/joint_sources.py), which halves the time of a build from nothing.
+# (tools/joint_sources.py), which halves the time of a build from nothing. Without Python each is compiled by itself.
 function(softgrain_join target lines)
+  if(NOT EXISTS "${Python_EXECUTABLE}")
+    return()
+  endif()
   execute_process(COMMAND "${Python_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/tools/joint_sources.py" ${lines} ${ARGN}
     OUTPUT_VARIABLE joints OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
   string(REPLACE "\n" ";" joints "${joints}")
@@ -10,4 +13,7 @@ function(softgrain_join target lines)
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP
     UNITY_BUILD_CODE_BEFORE_INCLUDE "#pragma GCC diagnostic ignored \"-Wshadow\"")  # of a hidden name of another source
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # for it every source of a joint is a header, whose types nobody should hide
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
 endfunction()

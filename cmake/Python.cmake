@@ -1,7 +1,5 @@
-# The module softgrain._core is built where Debian's python3-dev and pybind11-dev are. The interpreter is the system's, which has
-# NumPy; another one by -DPython_EXECUTABLE at the first configure.
+# The module softgrain._core is built where Debian's python3-dev and pybind11-dev are.
 option(SOFTGRAIN_PYTHON "Build the Python module where python3-dev and pybind11-dev are" ON)
-set(Python_EXECUTABLE "/usr/bin/python3" CACHE FILEPATH "Interpreter of the module and of the tests")
 if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
   set(SOFTGRAIN_PYTHON OFF)  # the interpreter would have to load the sanitizer first
 endif()

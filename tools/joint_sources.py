@@ -4,13 +4,15 @@
     tools/joint_sources.py LINES SOURCE...    prints "NUMBER SOURCE" for each: sources of one number make one joint source
 
 A joint source has at most LINES lines. Sources with a name in common in their anonymous namespaces, or that make functions
-of one template, are not joined; nor is one whose hidden name stands in a header of tests/ that another includes.
+of one template, are not joined; nor is one whose hidden name stands in a header of src/, or of tests/, that another one of
+that folder includes.
 """
+import functools
 import re
 import sys
 from pathlib import Path
 
-TESTS = Path(__file__).resolve().parent.parent / "tests"
+ROOT = Path(__file__).resolve().parent.parent
 HIDDEN = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.M | re.S)
 # a name that a line without indentation defines: type, alias, function, variable
 DEFINED = re.compile(r"^(?:struct|class|enum class|using|concept) (\w+)|^[\w:].*?[ &*>](\w+)(?:\(|\{| = |;|\[)", re.M)
@@ -31,16 +33,19 @@ def own_names(text):
     return hidden | set(TAKEN_IN.findall(text)) | set(INSTANTIATED.findall(text))
 
 
-def shared_names(source, text):
-    """Names of the headers in tests/ that a source includes, in any depth."""
-    names = set()
-    for header in INCLUDED.findall(text):
-        for path in (TESTS / header, source.parent / header):
-            if path.is_file() and path.is_relative_to(TESTS):
-                inner = path.read_text()
-                names |= defined(inner) | shared_names(path, inner)
-                break
-    return names
+@functools.cache
+def names_in(header):
+    """Names of a header and of those that it includes, in any depth."""
+    text = header.read_text()
+    return defined(text).union(*map(names_in, headers_of(header, text)))
+
+
+def headers_of(source, text):
+    """Headers that a source includes from its own folder of the project: src/ or tests/."""
+    top = ROOT / source.resolve().relative_to(ROOT).parts[0]
+    for name in INCLUDED.findall(text):
+        places = (folder / name for folder in (top, source.parent))
+        yield from [place for place in places if place.is_file()][:1]
 
 
 class Joint:
@@ -57,7 +62,8 @@ def joints(sources, longest):
     made = []
     for source in sorted(sources):
         text = Path(source).read_text()
-        lines, own, shared = text.count("\n"), own_names(text), shared_names(Path(source), text)
+        lines, own = text.count("\n"), own_names(text)
+        shared = set().union(*map(names_in, headers_of(Path(source), text)))
         joint = next((joint for joint in made if joint.takes(lines, own, shared, longest)), None)
         if joint is None:
             made.append(joint := Joint())
