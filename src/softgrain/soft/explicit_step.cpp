@@ -225,14 +225,25 @@ void ExplicitStep<Dim>::kick_batch(double dt, const WidePlaces<Dim>& force, Batc
     const Vec<Dim, Wide> v = batch.velocity[i];
     const Wide rate = scale * Wide(1 / topology.node_volume[i]);
     for (int d = 0; d < Dim; ++d) batch.velocity[i][d] += dt * options.gravity[d] - rate * force[i][d];
-    batch.position[i] -= Wide(options.damping_share * dt) * v;
-    Vec<Dim, Wide> damped{};
-    if (options.damping > 0) batch.velocity[i] += damped = damping_.velocity_change(batch.position[i], v);
-    if (i >= outline_begin) continue;
+    if (options.damping_share > 0) batch.position[i] -= Wide(options.damping_share * dt) * v;
+    const bool inside = i < outline_begin;
+    if (options.damping > 0) {
+      const Vec<Dim, Wide> damped = damping_.velocity_change(batch.position[i], v);
+      batch.velocity[i] += damped;
+      if (inside) step.damping -= grains.node_mass(batch, i) * (0.5 * dot(damped, v + batch.velocity[i]));
+    }
+    if (!inside) continue;
     batch.position[i] += Wide(dt) * batch.velocity[i];
-    step.add_work(force[i], weight(batch, i), Wide(dt / 2) * (v + batch.velocity[i]));
-    step.damping -= grains.node_mass(batch, i) * (0.5 * dot(damped, v + batch.velocity[i]));
+    add_work(batch, i, force[i], Wide(dt / 2) * (v + batch.velocity[i]), step);
   }
+}
+
+/// The work of a node's forces over its way [J/m in the plane].
+template <int Dim>
+void ExplicitStep<Dim>::add_work(const BatchOf<Dim>& batch, int node, const Vec<Dim, Wide>& internal_force,
+                                 const Vec<Dim, Wide>& way, BatchStep& step) const {
+  step.internal += dot(internal_force, way);
+  if (!(options.gravity == Vec<Dim>{})) step.gravity += dot(weight(batch, node), way);
 }
 
 /// x+ = x + dt v+ of a batch's outlines. The work over the step is that of a motion by dt (v+ + v)/2, in
@@ -249,7 +260,7 @@ void ExplicitStep<Dim>::drift_batch(double dt, BatchOf<Dim>& batch, BatchStep& s
       step.damping -= grains.node_mass(batch, i) *
                       (0.5 * dot(damping_.velocity_change(batch.position[i], step.velocity[k]), twice));
     batch.position[i] += Wide(dt) * batch.velocity[i];
-    step.add_work(step.force[k], weight(batch, i), Wide(dt / 2) * twice);
+    add_work(batch, i, step.force[k], Wide(dt / 2) * twice, step);
   }
 }
 

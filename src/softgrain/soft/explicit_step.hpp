@@ -88,14 +88,10 @@ class ExplicitStep {
     RigidTwistOf<Dim> twist;  ///< of rigid grains at the start of the step
     Wide internal = 0.0, gravity = 0.0, damping = 0.0;
     FlowOfStep flow;
-
-    void add_work(const Vec<Dim, Wide>& internal_force, const Vec<Dim, Wide>& weight,
-                  const Vec<Dim, Wide>& moved) {
-      internal += dot(internal_force, moved);
-      gravity += dot(weight, moved);
-    }
   };
   Vec<Dim, Wide> weight(const BatchOf<Dim>& batch, int node) const;
+  void add_work(const BatchOf<Dim>& batch, int node, const Vec<Dim, Wide>& internal_force,
+                const Vec<Dim, Wide>& way, BatchStep& step) const;
   FrictionByKind friction_by_kind() const {
     return {grains.kinds(), options.friction, options.wall_friction, options.pair_friction};
   }

@@ -57,8 +57,8 @@ bool surely_outside(std::span<const Vec<2>> position, const Ring& ring, int star
 /// The vertex v and its arc against a wall. With s = n . (x_next - x_previous)/2 and theta the arc's
 /// inclination, sin theta = s/l, the lowest place of the arc is f(s) = r (1 - cos theta) below the vertex; g
 /// = h - f is concave, so that outlines clear of a wall are a convex set.
-OutlineContact wall_contact(const OutlineState& state, int wall_index, const std::array<int, 4>& span,
-                            double height, const OutlineArc& arc, double size) {
+OutlineContact arc_at_wall(const OutlineState& state, int wall_index, const std::array<int, 4>& span,
+                           double height, const OutlineArc& arc, double size) {
   const Wall<2>& wall = state.walls[wall_index];
   OutlineContact contact{
       .vertex = span[1], .wall = wall_index, .master = span, .normal = wall.normal, .gap = height};
@@ -147,46 +147,42 @@ void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineS
 void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineState& state, double margin,
                                       Part& part) const {
   part.contacts.clear();
+  const std::span<const Wall<2>> walls = state.walls;
+  const std::span<const Vec<2>> position = state.position;
+  const double near_a_wall = margin + segment_, furthest = 3 * segment_ + range_;
+  const bool repeats = state.cell.any();
   auto candidate = part.candidates.begin();
   for (int v = part.begin; v < part.end; ++v) {
-    const Vec<2>& x = state.position[v];
-    for (int w = 0; w < static_cast<int>(state.walls.size()); ++w) {
-      const double height = dot(x - state.walls[w].point, state.walls[w].normal);
-      if (state.walls[w].open || height > margin + segment_) continue;
-      const int grain = grains.grain_of_vertex(v);
-      const bool vertex_alone = vertices_only_ && vertices_only_(grains.kind(grain), -1);
-      if (const OutlineArc* arc = vertex_alone ? nullptr : rigid_arc(grains, v)) {
-        const OutlineContact contact = rigid_wall_contact(grains, state, on_the_way_, w, v, *arc);
-        if (contact.gap < margin) part.contacts.push_back(contact);
-        continue;
-      }
-      const Ring ring = ring_of(grains, v);
-      const int next = ring.next(v);
-      const OutlineContact contact = wall_contact(
-          state, w, {ring.previous(v), v, next, ring.next(next)}, height,
-          vertex_alone ? OutlineArc{} : grains.topology(grain).arc[v - ring.begin], grains.radius(grain));
+    const Vec<2> x = position[v];
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+      const double height = dot(x - walls[w].point, walls[w].normal);
+      if (height > near_a_wall || walls[w].open) continue;
+      const OutlineContact contact = wall_contact(grains, state, static_cast<int>(w), v, height);
       if (contact.gap < margin) part.contacts.push_back(contact);
     }
     for (; candidate != part.candidates.end() && candidate->vertex == v; ++candidate) {
       const Ring ring = ring_of(grains, candidate->nearest);
-      const auto image = state.cell.nearest(state.position[candidate->nearest] - x);
-      const Vec<2> shift = state.cell.shift(image), motion = state.dt * state.cell.velocity(image);
+      Vec<2> shift{}, motion{};
+      if (repeats) {
+        const auto image = state.cell.nearest(position[candidate->nearest] - x);
+        shift = state.cell.shift(image);
+        motion = state.dt * state.cell.velocity(image);
+      }
       const Vec<2> seen = x - shift;  // from the master
-      candidate->nearest = nearest_vertex(ring, state.position, seen, candidate->nearest);
-      const Vec<2> d = seen - state.position[candidate->nearest];
-      const double furthest = 3 * segment_ + range_;
+      candidate->nearest = nearest_vertex(ring, position, seen, candidate->nearest);
+      const Vec<2> d = seen - position[candidate->nearest];
       if (dot(d, d) > furthest * furthest) continue;
-      const int start = facing_segment(ring, state.position, seen, candidate->nearest);
+      const int start = facing_segment(ring, position, seen, candidate->nearest);
       const int master = grains.grain_of_vertex(candidate->nearest);
       const bool vertex_alone =
           !grains.topology(master).rigid() ||
           (vertices_only_ && vertices_only_(grains.kind(grains.grain_of_vertex(v)), grains.kind(master)));
       const OutlineArc* arc = vertex_alone ? nullptr : rigid_arc(grains, v);
       const double arc_rise = arc == nullptr ? 0 : segment_ / 2;  // more than that of an arc over its vertex
-      if (surely_outside(state.position, ring, start, seen, margin + arc_rise)) continue;
-      const double gap =
-          arc == nullptr ? curve_contact(state.position, ring, v, seen, start).gap
-                         : facing_arc(grains, state.position, ring, v, *arc, shift, candidate->nearest).gap;
+      if (surely_outside(position, ring, start, seen, margin + arc_rise)) continue;
+      const double gap = arc == nullptr
+                             ? curve_contact(position, ring, v, seen, start).gap
+                             : facing_arc(grains, position, ring, v, *arc, shift, candidate->nearest).gap;
       if (gap >= margin) continue;
       const Vec<2> back = (1 - state.normals_at) * motion;
       OutlineContact contact =
@@ -200,6 +196,20 @@ void OutlineNeighbours::find_contacts(const SoftGrains& grains, const OutlineSta
       part.contacts.push_back(contact);
     }
   }
+}
+
+/// A vertex, or its arc, against a wall from which it is `height` away.
+OutlineContact OutlineNeighbours::wall_contact(const SoftGrains& grains, const OutlineState& state, int wall,
+                                               int v, double height) const {
+  const int grain = grains.grain_of_vertex(v);
+  const bool vertex_alone = vertices_only_ && vertices_only_(grains.kind(grain), -1);
+  if (const OutlineArc* arc = vertex_alone ? nullptr : rigid_arc(grains, v))
+    return rigid_wall_contact(grains, state, on_the_way_, wall, v, *arc);
+  const Ring ring = ring_of(grains, v);
+  const int next = ring.next(v);
+  return arc_at_wall(state, wall, {ring.previous(v), v, next, ring.next(next)}, height,
+                     vertex_alone ? OutlineArc{} : grains.topology(grain).arc[v - ring.begin],
+                     grains.radius(grain));
 }
 
 void OutlineNeighbours::keep(double range, std::function<bool(int, int)> vertices_only) {

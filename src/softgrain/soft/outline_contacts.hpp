@@ -94,6 +94,8 @@ class OutlineNeighbours {
   bool moved_far(const OutlineState& state);
   void find_candidates(const SoftGrains& grains, const OutlineState& state);
   void find_contacts(const SoftGrains& grains, const OutlineState& state, double margin, Part& part) const;
+  OutlineContact wall_contact(const SoftGrains& grains, const OutlineState& state, int wall, int v,
+                              double height) const;
 
   std::vector<Part> parts_;        // all vertices, in order
   std::vector<Vec<2>> reference_;  // positions when the candidates were found
