@@ -94,7 +94,7 @@ class Snapshot:
                 walls=np.asarray(walls, float).reshape(-1, 4),
                 outlines=outlines,
                 surface=surface,
-                points=_points_near_others(file, outlines) if "quad" in surface else {},
+                points=_points_near_others(file, outlines, surface) if "quad" in surface else {},
                 cell=scene["cell"][()] if "cell" in scene else np.empty((0, 2)),
             )
 
@@ -117,19 +117,22 @@ def _arrays(scene, name):
     return {key: a[:, 0] if a.ndim == 2 and a.shape[1] == 1 else a for key, a in arrays.items()}
 
 
-def _points_near_others(file, outlines):
-    """From the checkpoint of grains in space, whose contacts are (point, vertex, wall, 16 vertices of the patch behind it)."""
+def _points_near_others(file, outlines, surface):
+    """From the checkpoint of grains in space, whose contacts are (point, vertex, wall, 16 vertices of the patch that it faces).
+
+    Up to version 0.2 the middle of a patch that met a rigid sphere had the sphere's centre as its vertex, and its own patch."""
     if not {"contact_bodies", "contact_impulse", "contact_places"} <= file.get("checkpoint", {}).keys():
         return {}
     bodies = file["checkpoint/contact_bodies"][()].astype(int).reshape(-1, 19)
     point, vertex, wall, patch_vertex = bodies[:, 0], bodies[:, 1], bodies[:, 2], bodies[:, 3 + 5]
     grain, vertices = outlines["grain"].astype(int), len(outlines["grain"])
-    middle = point >= vertices
-    own = np.where(middle, patch_vertex, vertex)
-    return {"vertex": own, "grain": grain[own], "patch": np.where(middle, point - vertices, -1), "wall": wall,
+    patch = np.where(point >= vertices, point - vertices, -1)
+    turned = (patch >= 0) & (surface["grain"].astype(int)[patch] != grain[vertex])
+    own, facing = np.where(turned, patch_vertex, vertex), np.where(turned, vertex, patch_vertex)
+    return {"vertex": own, "grain": grain[own], "patch": patch, "wall": wall,
             "pushes": file["checkpoint/contact_impulse"][()].reshape(-1, 3)[:, 0] > 0,
             "gap": file["checkpoint/contact_places"][()].reshape(-1, 20)[:, 3],
-            "facing": np.where(wall < 0, grain[np.where(middle, vertex, patch_vertex)], -1)}
+            "facing": np.where(wall < 0, grain[facing], -1)}
 
 
 def _tangential_force(force, impulse):

@@ -44,7 +44,8 @@ class Shares {
 
 /// Numbers that are sent as they lie in memory: those of lanes too, which copy themselves.
 template <class T>
-inline constexpr bool is_plain = std::is_trivially_destructible_v<T>&& std::is_standard_layout_v<T>;
+inline constexpr bool is_plain = std::is_trivially_copyable_v<T> ||
+                                 (std::is_trivially_destructible_v<T> && std::is_standard_layout_v<T>);
 
 /// What ranks send each other of the results of an item. They are named once, for whoever measures, sends or
 /// receives them.

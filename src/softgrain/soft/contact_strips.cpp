@@ -22,10 +22,16 @@ void ContactStrips::sort(Contacts<Dim> contacts, const OutlineStateOf<Dim>& outl
     const double x = along(outline.position[contacts[c].vertex]), image = ring ? along(contacts[c].image) : 0;
     low = c == 0 ? x : std::min(low, x);
     high = c == 0 ? x : std::max(high, x);
-    contacts[c].for_each_vertex([&](int vertex, double) {
+    const auto reach_to = [&](int vertex, double shift) {
       if (vertex != contacts[c].vertex)
-        reach = std::max(reach, std::abs(along(outline.position[vertex]) + image - x));
-    });
+        reach = std::max(reach, std::abs(along(outline.position[vertex]) + shift - x));
+    };
+    if constexpr (Dim == 2) {
+      contacts[c].for_each_vertex([&](int vertex, double) { reach_to(vertex, image); });
+    } else {
+      contacts[c].for_each_own_vertex([&](int vertex, double) { reach_to(vertex, 0); });
+      contacts[c].for_each_facing_vertex([&](int vertex, double) { reach_to(vertex, image); });
+    }
   }
   if (ring) low = 0, high = 1;
   // vertices of strip s lie in (s width - reach, (s + 1) width + reach)

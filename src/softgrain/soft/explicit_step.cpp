@@ -53,8 +53,8 @@ ExplicitStep<Dim>::ExplicitStep(GrainsOf<Dim> soft_grains, Box<Dim> box_of_grain
       inverse_mass_.push_back(1 / (grains.material(grains.kind(g)).density * shape.node_volume[i] *
                                    grains.radius(g) * grains.radius(g) * (Dim == 3 ? grains.radius(g) : 1)));
   }
-  for (std::vector<Vec<Dim>>* of_vertices :
-       {&outline_velocity_, &outline_velocity_start_, &outline_.start, &outline_.position})
+  outline_velocity_.resize(grains.outline_size());
+  for (std::vector<Vec<Dim>>* of_vertices : {&outline_velocity_start_, &outline_.start, &outline_.position})
     of_vertices->resize(grains.outline_size());
   if (!bodies_.body.empty())
     for (int v = 0; v < grains.outline_size(); ++v)
@@ -148,7 +148,8 @@ void ExplicitStep<Dim>::fly_outline(double dt) {
   parallel_for(static_cast<int>(grains.batches.size()), [&](int b) {
     const BatchOf<Dim>& batch = grains.batches[b];
     grains.for_each_vertex(batch, [&](int v, int i, int lane) {
-      outline_velocity_[v] = outline_velocity_start_[v] = lane_of(batch.velocity[i], lane);
+      outline_velocity_start_[v] = lane_of(batch.velocity[i], lane);
+      outline_velocity_[v] = outline_velocity_start_[v];
       outline_.start[v] = lane_of(batch.position[i], lane);
       outline_.position[v] = outline_.start[v] + dt * outline_velocity_[v];
     });

@@ -122,7 +122,8 @@ class ExplicitStep {
   OutlineAdhesion adhesion_;
   std::vector<Vec<Dim>> felt_;
   OutlineStateOf<Dim> outline_;
-  std::vector<Vec<Dim>> outline_velocity_, outline_velocity_start_;
+  std::vector<ScatteredVec<Dim>> outline_velocity_;
+  std::vector<Vec<Dim>> outline_velocity_start_;
   std::vector<double> inverse_mass_;  // (outline vertices)
   LumpedBodiesOf<Dim> bodies_;        // the rigid grains
   std::vector<int> body_of_grain_;    // or -1

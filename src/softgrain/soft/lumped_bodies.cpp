@@ -41,7 +41,7 @@ void add_spin(LumpedBodyOf<3>& body, const Vec<3>& arm, const Vec<3>& P) {
 
 template <int Dim>
 BodyContacts<Dim>::BodyContacts(std::span<const ContactOf<Dim>> contacts, const OutlineStateOf<Dim>& outline,
-                                std::span<Vec<Dim>> velocity, std::span<const double> inverse_mass,
+                                std::span<ScatteredVec<Dim>> velocity, std::span<const double> inverse_mass,
                                 LumpedBodiesOf<Dim>& bodies)
     : velocity_(velocity), bodies_(bodies) {
   if (bodies.body.empty()) return;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "softgrain/contact/nlgs.hpp"
+#include "softgrain/math/padded_vec.hpp"
 #include "softgrain/math/tensor.hpp"
 #include "softgrain/soft/contact_of.hpp"
 
@@ -56,7 +57,7 @@ class BodyContacts {
  public:
   /// As LumpedSystem; keeps a reference to the bodies too, which have the velocities u_found now.
   BodyContacts(std::span<const ContactOf<Dim>> contacts, const OutlineStateOf<Dim>& outline,
-               std::span<Vec<Dim>> velocity, std::span<const double> inverse_mass,
+               std::span<ScatteredVec<Dim>> velocity, std::span<const double> inverse_mass,
                LumpedBodiesOf<Dim>& bodies);
 
   bool has(int contact) const { return !row_of_.empty() && row_of_[static_cast<std::size_t>(contact)] >= 0; }
@@ -66,7 +67,7 @@ class BodyContacts {
   void apply_impulse(int contact, const Vec<Dim>& dp);
 
  private:
-  static constexpr std::size_t most_vertices = Dim == 2 ? 5 : 17;
+  static constexpr std::size_t most_vertices = Dim == 2 ? 5 : 32;
   struct Side {
     int body = -1;
     double weight = 0;
@@ -88,7 +89,7 @@ class BodyContacts {
   std::vector<Row> rows_;
   std::vector<int> contact_;  // of each row
   std::vector<int> row_of_;   // (all contacts) or -1; empty if there are no bodies
-  std::span<Vec<Dim>> velocity_;
+  std::span<ScatteredVec<Dim>> velocity_;
   LumpedBodiesOf<Dim>& bodies_;
 };
 

@@ -12,22 +12,6 @@ constexpr int least_for_threads = 512;
 
 }  // namespace
 
-/// sum weight v
-template <int Dim>
-[[gnu::always_inline]] inline Vec<Dim> LumpedSystem<Dim>::velocity_of(const Row& row) const {
-  const Vec<Dim>* v = velocity_.data();
-  Vec<Dim> u = row.weight[0] * v[row.vertex[0]];
-  if (row.vertices == 1) return u;
-  if constexpr (Dim == 3) {
-    const auto count = static_cast<std::size_t>(row.vertices);
-    for (std::size_t k = 1; k < count; ++k) u += row.weight[k] * v[row.vertex[k]];
-    return u;
-  }
-  Vec<Dim> others = row.weight[1] * v[row.vertex[1]] + row.weight[2] * v[row.vertex[2]];
-  if (row.vertices == 5) others += row.weight[3] * v[row.vertex[3]] + row.weight[4] * v[row.vertex[4]];
-  return u += others;
-}
-
 template <int Dim>
 inline Vec<Dim> LumpedSystem<Dim>::relative_velocity(const Row& row) const {
   return to_local(row.normal, velocity_of(row)) + row.offset;
@@ -35,34 +19,23 @@ inline Vec<Dim> LumpedSystem<Dim>::relative_velocity(const Row& row) const {
 
 template <int Dim>
 [[gnu::always_inline]] inline void LumpedSystem<Dim>::apply_impulse(const Row& row, const Vec<Dim>& dp) {
-  const Vec<Dim> P = from_local(row.normal, dp);
-  Vec<Dim>* v = velocity_.data();
-  v[row.vertex[0]] += row.mobility[0] * P;
-  if (row.vertices == 1) return;
-  if constexpr (Dim == 3) {
-    const auto count = static_cast<std::size_t>(row.vertices);
-    for (std::size_t k = 1; k < count; ++k) v[row.vertex[k]] += row.mobility[k] * P;
-    return;
-  }
-  for (std::size_t k = 1; k < 3; ++k) v[row.vertex[k]] += row.mobility[k] * P;
-  if (row.vertices == 3) return;
-  for (std::size_t k = 3; k < 5; ++k) v[row.vertex[k]] += row.mobility[k] * P;
+  row.push(from_local(row.normal, dp), velocity_.data(), inverse_mass_.data());
 }
 
 template <int Dim>
 LumpedSystem<Dim>::LumpedSystem(std::span<const ContactOf<Dim>> contacts, const OutlineStateOf<Dim>& outline,
-                                std::span<Vec<Dim>> velocity, std::span<const double> inverse_mass,
+                                std::span<ScatteredVec<Dim>> velocity, std::span<const double> inverse_mass,
                                 LumpedBodiesOf<Dim>& bodies, Scratch& scratch)
     : rows_(scratch.rows),
       strips_(scratch.strips),
       velocity_(velocity),
+      inverse_mass_(inverse_mass),
       of_bodies_(contacts, outline, velocity, inverse_mass, bodies) {
   strips_.template sort<Dim>(contacts, outline);
   rows_.resize(contacts.size());
   for_each_strip([&](int strip) {
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
-      if (!of_bodies_.has(strips_.order[k]))
-        rows_[k] = row_of(contacts[strips_.order[k]], outline, inverse_mass);
+      if (!of_bodies_.has(strips_.order[k])) rows_[k] = row_of(contacts[strips_.order[k]], outline);
       rows_[k].contact = strips_.order[k];
     }
   });
@@ -79,18 +52,8 @@ void LumpedSystem<Dim>::for_each_strip(const Work& work) const {
 
 template <int Dim>
 typename LumpedSystem<Dim>::Row LumpedSystem<Dim>::row_of(const ContactOf<Dim>& contact,
-                                                          const OutlineStateOf<Dim>& outline,
-                                                          std::span<const double> inverse_mass) const {
-  Row row;
-  std::size_t count = 0;
-  contact.for_each_vertex([&](int vertex, double weight) {
-    row.vertex[count] = vertex;
-    row.weight[count] = weight;
-    row.mobility[count] = weight * inverse_mass[vertex];
-    row.delassus += weight * row.mobility[count++];
-  });
-  row.vertices = static_cast<int>(count);
-  row.normal = contact.normal;
+                                                          const OutlineStateOf<Dim>& outline) const {
+  Row row(contact, inverse_mass_);
   if (contact.wall >= 0 || outline.cell.any()) {
     const Vec<Dim> v =
         contact.wall >= 0 ? outline.walls[contact.wall].velocity : (1 / outline.dt) * contact.image_motion;

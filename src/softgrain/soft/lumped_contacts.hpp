@@ -9,6 +9,7 @@
 #include "softgrain/contact/tangents.hpp"
 #include "softgrain/soft/contact_strips.hpp"
 #include "softgrain/soft/lumped_bodies.hpp"
+#include "softgrain/soft/lumped_row.hpp"
 
 namespace softgrain {
 
@@ -23,9 +24,9 @@ class LumpedSystem {
   struct Scratch;
   /// velocity: (outline vertices) [m/s], u_found when constructed, then changed by the caller and by
   /// impulses, as are those of the rigid bodies; inverse_mass: (outline vertices) [m/kg]. Keeps references to
-  /// the velocities, the bodies and the scratch.
+  /// the velocities, the masses, the bodies and the scratch.
   LumpedSystem(std::span<const ContactOf<Dim>> contacts, const OutlineStateOf<Dim>& outline,
-               std::span<Vec<Dim>> velocity, std::span<const double> inverse_mass,
+               std::span<ScatteredVec<Dim>> velocity, std::span<const double> inverse_mass,
                LumpedBodiesOf<Dim>& bodies, Scratch& scratch);
 
   int size() const { return static_cast<int>(rows_.size()); }
@@ -49,21 +50,11 @@ class LumpedSystem {
   void push(PushedBodies& bodies) { pushed_ = &bodies; }
 
  private:
-  static constexpr std::size_t most_vertices = Dim == 2 ? 5 : 17;
-  // per contact and sweep: reads 160 B in the order of memory, and five velocities; in space 460 B and 17
-  struct Row {
-    int contact = 0;
-    int vertices = 0;                         // 5, 17 in space; at a wall 3, 16, or 1
-    std::array<int, most_vertices> vertex{};  // the slave, then the master's; or those of a place at a wall
-    std::array<double, most_vertices> weight{};    // 1, -w_k; or w_k
-    std::array<double, most_vertices> mobility{};  // weight/m: velocity by a unit impulse
-    Vec<Dim> normal, offset;                       // u = (n, t) . sum weight v + offset
-    double delassus = 0, inverse_delassus = 0;
-  };
+  using Row = LumpedRow<Dim>;
+
   const Row& row(int contact) const { return rows_[strips_.place[contact]]; }
-  Row row_of(const ContactOf<Dim>& contact, const OutlineStateOf<Dim>& outline,
-             std::span<const double> inverse_mass) const;
-  Vec<Dim> velocity_of(const Row& row) const;
+  Row row_of(const ContactOf<Dim>& contact, const OutlineStateOf<Dim>& outline) const;
+  Vec<Dim> velocity_of(const Row& row) const { return row.velocity(velocity_.data()); }
   Vec<Dim> relative_velocity(const Row& row) const;
   void apply_impulse(const Row& row, const Vec<Dim>& dp);
   void solve(const Row& row, Vec<Dim>& p, double friction, const SolverOptions& options,
@@ -73,7 +64,8 @@ class LumpedSystem {
 
   std::vector<Row>& rows_;  // strip by strip
   ContactStrips& strips_;
-  std::span<Vec<Dim>> velocity_;
+  std::span<ScatteredVec<Dim>> velocity_;
+  std::span<const double> inverse_mass_;
   BodyContacts<Dim> of_bodies_;
   PushedBodies* pushed_ = nullptr;
 };

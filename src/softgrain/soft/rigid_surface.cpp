@@ -87,6 +87,7 @@ void find_edges(const std::vector<Vec<3>>& edges, SolidTopology& shape) {
       const Vec<3> there = normal_of(outline, outline.quad[quad_at.at({b, a})]);
       if (dot(here, there) < std::cos(least_edge) && near_an_edge(a, b)) net.sharp |= side[k];
     }
+    net.middle = patch_weights(net, 0.5, 0.5);
   }
 }
 

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <cmath>
 #include <cstdint>
 #include <variant>
@@ -104,13 +106,9 @@ std::vector<ContactPointOf<3>> contact_points(const SoftViewOf<3>& view) {
   for (std::size_t c = 0; c < view.contacts.size(); ++c) {
     const SurfaceContact& contact = view.contacts[c];
     if (!(view.impulse[c][0] > 0)) continue;
-    Vec<3> place = x[contact.vertex];
+    Vec<3> place = place_of(contact, x);
     if (const int g = grains.grain_of_vertex(contact.vertex); grains.topology(g).ball)
       place -= grains.radius(g) * contact.normal;
-    if (contact.wall >= 0 && !contact.is_vertex_at_wall()) {
-      place = {};
-      contact.for_each_vertex([&](int v, double weight) { place += weight * x[v]; });
-    }
     points.push_back(
         {.a = grains.grain_of_vertex(contact.vertex),
          .b = contact.wall >= 0 ? wall_index(contact.wall) : grains.grain_of_vertex(contact.master[5]),
@@ -195,10 +193,9 @@ void visit_contacts(const SolidGrains& grains, int walls, bool repeats, std::vec
   if (repeats) visit_contact_images(visit, images);
   visit.list({"contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t)"}, impulse);
   if (!visit.reads()) return;
-  int patches = 0;
-  for (int g = 0; g < grains.size(); ++g) patches += static_cast<int>(grains.topology(g).patches.size());
+  const PatchMiddles middles(grains);
   check_contact_bodies(bodies, bodies_of_contact, 2, [&](std::size_t k) {
-    return k == 2 ? walls : grains.outline_size() + (k == 0 ? patches : 0);
+    return k == 2 ? walls : grains.outline_size() + (k == 0 ? middles.size() : 0);
   });
   if (places.size() != impulse.size() || (repeats && images.size() != impulse.size()) ||
       bodies.size() != bodies_of_contact * places.size())
@@ -207,7 +204,15 @@ void visit_contacts(const SolidGrains& grains, int walls, bool repeats, std::vec
   for (std::size_t c = 0; c < places.size(); ++c) {
     const auto body = [&](std::size_t k) { return static_cast<int>(bodies[bodies_of_contact * c + k]); };
     const auto& place = places[c];
-    SurfaceContact contact{.point = body(0), .vertex = body(1), .wall = body(2)};
+    SurfaceContact contact{.point = body(0), .vertex = body(1)};
+    if (contact.point >= grains.outline_size())
+      contact = middles.point(contact.point - grains.outline_size());
+    if (contact.vertex != body(1))
+      throw IoError(fmt::format(
+          "the snapshot's array 'contact_bodies' holds vertex {} for the middle of a patch at vertex {}, as "
+          "version 0.2 wrote it where rigid spheres meet elastic ones; begin the run again",
+          body(1), contact.vertex));
+    contact.wall = body(2);
     contact.normal = {place[0], place[1], place[2]};
     contact.gap = place[3];
     if (repeats) contact.image = images[c];

@@ -22,29 +22,23 @@ struct Points {
 
 Points points_of(const SolidGrains& grains, const OutlineStateOf<3>& state) {
   Points points;
-  int patch = grains.outline_size();
   for (int g = 0; g < grains.size(); ++g) {
     const SolidTopology& shape = grains.topology(g);
     const int begin = grains.outline_begin(g), end = grains.outline_end(g);
-    if (shape.rigid_shape()) {  // it is looked for among the patches
-      patch += static_cast<int>(shape.patches.size());
-      continue;
-    }
+    if (shape.rigid_shape()) continue;  // it is looked for among the patches
     for (int v = shape.rigid() ? end - 1 : begin; v < end; ++v) {
       if (shape.rigid()) points.sphere.push_back(static_cast<int>(points.position.size()));
       points.position.push_back(state.position[v]);
       points.contact.push_back({.point = v, .vertex = v});
     }
     if (shape.rigid()) points.largest = std::max(points.largest, grains.radius(g));
-    for (const PatchNet& net : shape.patches) {
-      SurfaceContact middle{.point = patch++};
-      if (shape.rigid()) continue;
-      set_master(middle, net, begin, 0.5, 0.5);
-      Vec<3> x;
-      for (std::size_t k = 0; k < 16; ++k) x += middle.weight[k] * state.position[middle.master[k]];
-      points.position.push_back(x);
-      points.contact.push_back(middle);
-    }
+  }
+  const PatchMiddles middles(grains);
+  for (int patch = 0; patch < middles.size(); ++patch) {
+    const SurfaceContact middle = middles.point(patch);
+    if (grains.topology(grains.grain_of_vertex(middle.vertex)).rigid()) continue;
+    points.position.push_back(place_of(middle, state.position));
+    points.contact.push_back(middle);
   }
   return points;
 }
@@ -66,10 +60,6 @@ void add_if_near(const SolidGrains& grains, const OutlineStateOf<3>& state, doub
 /// Those of one sphere with a point beside it.
 void add_contact(const SolidGrains& grains, const OutlineStateOf<3>& state, double margin,
                  const SurfaceContact& sphere, SurfaceContact other, std::vector<SurfaceContact>& contacts) {
-  if (other.point >= grains.outline_size()) {
-    other.vertex = sphere.vertex;
-    return add_if_near(grains, state, margin, other, contacts);
-  }
   const bool both = grains.topology(grains.grain_of_vertex(other.vertex)).rigid();
   if (both && other.vertex >= sphere.vertex) return;
   other.master.fill(sphere.vertex);

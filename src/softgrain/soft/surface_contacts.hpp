@@ -10,8 +10,8 @@
 namespace softgrain {
 
 /// A point of a grain in space against another grain's outline (the master), or against a wall. Both grains
-/// of a pair bring their vertices; to walls a grain brings the middles of its patches too, since a wall is no
-/// finer than what meets it.
+/// of a pair bring their vertices and the middles of their patches, so that neither outline bulges into the
+/// other between its vertices.
 ///
 /// Place and normal on the master are those where the contact was found. Until it is looked for again they
 /// stay, and with them the weights: the gap n . sum weight x is linear in the vertices, so that impulses with
@@ -19,9 +19,11 @@ namespace softgrain {
 struct SurfaceContact {
   /// Number of the point: an outline vertex, or behind all of these the patch whose middle it is
   int point = 0;
-  int vertex = 0;  ///< the point itself, or a corner of its patch
-  int wall = -1;   ///< or -1
-  /// vertices of the patch that it faces, or of its own, with their weights
+  int vertex = 0;                 ///< the point itself, or a corner of its patch
+  int wall = -1;                  ///< or -1
+  const PatchNet* own = nullptr;  ///< whose middle the point is, of the grain's shape; or none
+  int own_begin = 0;              ///< first outline vertex of that grain
+  /// vertices of the patch that it faces, with their weights
   std::array<int, 16> master{};
   std::array<double, 16> weight{};
   Vec<3> normal{};        ///< unit, from the master or wall to the point
@@ -30,16 +32,40 @@ struct SurfaceContact {
   Vec<3> image{};         ///< from where the master is to where the point meets it, in a periodic cell [m]
   Vec<3> image_motion{};  ///< of that image against the master over the step [m]
 
-  bool is_vertex_at_wall() const { return wall >= 0 && point == vertex; }
-  /// visit(vertex, weight) for all vertices that take part: dg = n . sum weight dx.
+  /// visit(vertex, weight) for the vertices of the point: its place is sum weight x.
+  template <class Visit>
+  void for_each_own_vertex(Visit&& visit) const {
+    if (own == nullptr) return visit(vertex, 1.0);
+    for (std::size_t k = 0; k < 16; ++k)
+      if (own->middle[k] != 0) visit(own_begin + own->vertex[k], own->middle[k]);
+  }
+  /// The same for those of the master, if there is one; weights with the sign that they have in the gap.
+  template <class Visit>
+  void for_each_facing_vertex(Visit&& visit) const {
+    if (wall >= 0) return;
+    for (std::size_t k = 0; k < 16; ++k)
+      if (weight[k] != 0) visit(master[k], -weight[k]);
+  }
+  /// For all vertices that take part: dg = n . sum weight dx.
   template <class Visit>
   void for_each_vertex(Visit&& visit) const {
-    if (wall < 0 || point == vertex) visit(vertex, 1.0);
-    if (is_vertex_at_wall()) return;
-    const double sign = wall >= 0 ? 1 : -1;
-    for (std::size_t k = 0; k < 16; ++k)
-      if (weight[k] != 0) visit(master[k], sign * weight[k]);
+    for_each_own_vertex(visit);
+    for_each_facing_vertex(visit);
   }
+};
+
+/// The middles of the patches of all grains, which are numbered behind their outline vertices. Keeps a
+/// reference to the grains.
+class PatchMiddles {
+ public:
+  explicit PatchMiddles(const SolidGrains& grains);
+  int size() const { return begin_.back(); }
+  /// The point `patch` from 0, with nothing that it meets yet.
+  SurfaceContact point(int patch) const;
+
+ private:
+  const SolidGrains& grains_;
+  std::vector<int> begin_{0};  // (grains + 1)
 };
 
 /// Finds the contacts of outlines in space. It remembers nothing, so that whoever goes on from a snapshot
@@ -52,13 +78,15 @@ class SurfaceNeighbours {
                                      double margin) const;
 };
 
+/// Where the point of a contact is, of outlines at x [m].
+Vec<3> place_of(const SurfaceContact& contact, std::span<const Vec<3>> x);
+
 /// Sum of the radii of the rigid spheres that take part in a contact [m].
 double offset_of(const SurfaceContact& contact, const SolidGrains& grains);
 
 /// The grain on the other side of a contact that has no wall.
 inline int facing_grain(const SurfaceContact& contact, const SolidGrains& grains) {
-  const bool is_middle = contact.point >= grains.outline_size();
-  return grains.grain_of_vertex(is_middle ? contact.vertex : contact.master[5]);
+  return grains.grain_of_vertex(contact.master[5]);
 }
 
 /// Brings the gap of a contact, and its image, up to where its vertices and the periodic cell are now.

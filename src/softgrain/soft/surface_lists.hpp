@@ -13,6 +13,9 @@
 
 namespace softgrain {
 
+/// Points that a thread takes at once.
+inline constexpr int points_at_once = 256;
+
 /// Points, and those of their images that lie near a periodic cell, sorted into cells of a size [m].
 class ImagedGrid {
  public:
@@ -69,13 +72,13 @@ inline void add_wall_contacts(const OutlineStateOf<3>& state, SurfaceContact con
 
 /// add(i, list) for i = 0 .. count - 1 on all threads, `at_once` of them in one go; the lists one after the
 /// other.
-template <class Add>
-void append_in_parallel(int count, int at_once, std::vector<SurfaceContact>& contacts, const Add& add) {
-  std::vector<std::vector<SurfaceContact>> parts((count + at_once - 1) / at_once);
+template <class Item, class Add>
+void append_in_parallel(int count, int at_once, std::vector<Item>& all, const Add& add) {
+  std::vector<std::vector<Item>> parts((count + at_once - 1) / at_once);
   parallel_for(static_cast<int>(parts.size()), [&](int k) {
     for (int i = k * at_once; i < std::min(count, (k + 1) * at_once); ++i) add(i, parts[k]);
   });
-  for (const auto& part : parts) contacts.insert(contacts.end(), part.begin(), part.end());
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
 }
 
 }  // namespace softgrain

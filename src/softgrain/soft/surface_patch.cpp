@@ -56,7 +56,7 @@ PatchNet net_of(Quad quad, const QuadNeighbours& neighbours) {
   const Quad original = quad;
   if (ghosts) std::rotate(quad.begin(), first, quad.end());
   const auto [a, b, c, d] = quad;
-  PatchNet net{.vertex = {}, .ghosts = ghosts};
+  PatchNet net{.vertex = {}, .ghosts = ghosts, .middle = {}};
   const auto put = [&](std::size_t i, std::size_t j, int vertex) { net.vertex[4 * i + j] = vertex; };
   put(1, 1, a), put(2, 1, b), put(2, 2, c), put(1, 2, d);
   const auto ab = neighbours.across(original, a, b), bc = neighbours.across(original, b, c),
@@ -69,6 +69,7 @@ PatchNet net_of(Quad quad, const QuadNeighbours& neighbours) {
   put(3, 0, neighbours.opposite(b, a, c));
   put(3, 3, neighbours.opposite(c, b, d));
   put(0, 3, neighbours.opposite(d, c, a));
+  net.middle = patch_weights(net, 0.5, 0.5);
   return net;
 }
 

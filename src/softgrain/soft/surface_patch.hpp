@@ -21,9 +21,10 @@ struct PatchNet {
   /// The sides u = 0, u = 1, v = 0 and v = 1
   enum Side : unsigned { low_u = 1, high_u = 2, low_v = 4, high_v = 8 };
 
-  std::array<int, 16> vertex{};  ///< P_ij at 4 i + j; with ghosts C at 0 and P_11 at 1 and 4
-  bool ghosts = false;           ///< P_11 has valence 3
-  unsigned sharp = 0;            ///< sides along which the outline has an edge
+  std::array<int, 16> vertex{};     ///< P_ij at 4 i + j; with ghosts C at 0 and P_11 at 1 and 4
+  bool ghosts = false;              ///< P_11 has valence 3
+  unsigned sharp = 0;               ///< sides along which the outline has an edge
+  std::array<double, 16> middle{};  ///< patch_weights at u = v = 1/2
 };
 
 /// Nets of all quads of a closed outline, whose vertices have valence 4 or 3, two of valence 3 never in one

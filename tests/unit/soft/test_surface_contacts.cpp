@@ -1,9 +1,13 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "softgrain/soft/rigid_surface.hpp"
 #include "softgrain/soft/solid_topology.hpp"
+#include "support/meshes.hpp"
 #include "support/solid_grains.hpp"
 
 using namespace softgrain;
@@ -98,21 +102,68 @@ TEST_CASE("tangents of a patch are the derivatives of its place, and neighbourin
   }
 }
 
-TEST_CASE("vertices of two balls face each other's sphere along the line of centres") {
+TEST_CASE("vertices and middles of two balls face each other's sphere along the line of centres") {
   TwoBalls two(0.02);
   const auto contacts = SurfaceNeighbours{}.detect(two.grains, two.state, 0.3);
-  REQUIRE(contacts.size() > 4);
-  bool first = false, second = false;
+  REQUIRE(contacts.size() > 8);
+  std::array<int, 2> vertices{}, middles{};  // of each ball
   for (const SurfaceContact& contact : contacts) {
     const int grain = two.grains.grain_of_vertex(contact.vertex);
-    (grain == 0 ? first : second) = true;
+    ++(contact.own == nullptr ? vertices : middles)[static_cast<std::size_t>(grain)];
+    CHECK(facing_grain(contact, two.grains) == 1 - grain);
     const Vec<3> centre{0, 0, grain == 0 ? 1.96 : 0.0};  // of the master
-    const Vec<3> d = two.state.position[static_cast<std::size_t>(contact.vertex)] - centre;
+    const Vec<3> d = place_of(contact, two.state.position) - centre;
     CHECK(contact.gap == doctest::Approx(norm(d) - 1).epsilon(0.006));  // of a smooth outline of 98 vertices
     CHECK(dot(contact.normal, d) / norm(d) > 0.999);
     CHECK(gap_now(contact, two.state) == doctest::Approx(contact.gap).epsilon(1e-9));
   }
-  CHECK((first && second));
+  for (const std::size_t ball : {0u, 1u}) CHECK((vertices[ball] > 0 && middles[ball] > 0));
+}
+
+TEST_CASE("every vertex and middle near another ball is found, in a cell that repeats, too") {
+  for (const bool repeats : {false, true}) {
+    TwoBalls two(0.04, 6);
+    if (repeats) {  // the second ball is met through the image above
+      two.state.cell.repeats = {false, false, true};
+      two.state.cell.edges = Mat<3>::diagonal({1, 1, 10});
+      for (std::size_t v = two.state.position.size() / 2; v < two.state.position.size(); ++v)
+        two.state.position[v][2] += 10;
+      two.state.start = two.state.position;
+    }
+    const double margin = 0.1, error = 0.003;  // of the smooth outline
+    const auto contacts = SurfaceNeighbours{}.detect(two.grains, two.state, margin);
+    const double segment = std::sqrt(4 * std::numbers::pi / 218);
+    const PatchMiddles middles(two.grains);
+    int near = 0;
+    const auto look_at = [&](const SurfaceContact& point) {
+      const int other = 1 - two.grains.grain_of_vertex(point.vertex);
+      const double there = repeats ? (other == 1 ? 10 : -10) : 0, height = other == 1 ? 1.92 : 0;
+      const Vec<3> d =
+          place_of(point, two.state.position) - Vec<3>{0, 0, height + (repeats && other == 1 ? 10 : 0)};
+      const Vec<3> way{d[0], d[1], d[2] + there};
+      if (norm(way) - 1 > margin * segment - error) return;
+      ++near;
+      CHECK(std::count_if(contacts.begin(), contacts.end(),
+                          [&](const SurfaceContact& c) { return c.point == point.point; }) == 1);
+    };
+    for (int v = 0; v < two.grains.outline_size(); ++v) look_at({.point = v, .vertex = v});
+    for (int q = 0; q < middles.size(); ++q) look_at(middles.point(q));
+    CHECK(near > 12);
+  }
+}
+
+TEST_CASE("the middle of a patch is its place at u = v = 1/2, with ghosts and with edges") {
+  const SolidTopology ball(ball_grid(4));
+  const SolidTopology cube = rigid_surface(StarSurface(test::cube_mesh(1)), 4);
+  for (const SolidTopology* shape : {&ball, &cube}) {
+    const Vec<3>* x = shape->grid.node.data() + shape->grid.outline_begin;
+    for (const PatchNet& net : shape->patches) {
+      const SurfaceContact middle{.point = 1000, .own = &net};
+      Vec<3> place;
+      middle.for_each_own_vertex([&](int v, double weight) { place += weight * x[v]; });
+      CHECK(norm(place - SurfacePatch(net, x).at(0.5, 0.5).place) < 1e-14);
+    }
+  }
 }
 
 TEST_CASE("impulses of contacts between grains in space change no momentum") {

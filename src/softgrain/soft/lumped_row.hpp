@@ -1,0 +1,110 @@
+#pragma once
+#include <array>
+#include <span>
+
+#include "softgrain/math/padded_vec.hpp"
+#include "softgrain/soft/contact_of.hpp"
+
+namespace softgrain {
+
+/// One contact of LumpedSystem: u = (n, t) . sum weight v + offset, and what an impulse P does to the
+/// vertices that take part, v += weight/m P.
+template <int Dim>
+struct LumpedRow;
+
+// per contact and sweep: reads 160 B in the order of memory, and five velocities
+template <>
+struct LumpedRow<2> {
+  int contact = 0;
+  int vertices = 0;                  // 5; at a wall 3 or 1
+  std::array<int, 5> vertex{};       // the slave, then the master's; or those of a place at a wall
+  std::array<double, 5> weight{};    // 1, -w_k; or w_k
+  std::array<double, 5> mobility{};  // weight/m: velocity by a unit impulse
+  Vec<2> normal, offset;
+  double delassus = 0, inverse_delassus = 0;
+
+  LumpedRow() = default;
+  LumpedRow(const OutlineContact& met, std::span<const double> inverse_mass) : normal(met.normal) {
+    std::size_t count = 0;
+    met.for_each_vertex([&](int v, double w) {
+      vertex[count] = v;
+      weight[count] = w;
+      mobility[count] = w * inverse_mass[v];
+      delassus += w * mobility[count++];
+    });
+    vertices = static_cast<int>(count);
+  }
+
+  /// sum weight v
+  [[gnu::always_inline]] Vec<2> velocity(const Vec<2>* v) const {
+    Vec<2> u = weight[0] * v[vertex[0]];
+    if (vertices == 1) return u;
+    Vec<2> others = weight[1] * v[vertex[1]] + weight[2] * v[vertex[2]];
+    if (vertices == 5) others += weight[3] * v[vertex[3]] + weight[4] * v[vertex[4]];
+    return u += others;
+  }
+  [[gnu::always_inline]] void push(const Vec<2>& P, Vec<2>* v, const double*) const {
+    v[vertex[0]] += mobility[0] * P;
+    if (vertices == 1) return;
+    for (std::size_t k = 1; k < 3; ++k) v[vertex[k]] += mobility[k] * P;
+    if (vertices == 3) return;
+    for (std::size_t k = 3; k < 5; ++k) v[vertex[k]] += mobility[k] * P;
+  }
+};
+
+// per contact and sweep: reads 290 B in the order of memory, 17 velocities and masses, or 1, 16 or 32; of a
+// middle the weights of its patch, which all grains of a shape share
+template <>
+struct LumpedRow<3> {
+  int contact = 0;
+  int begin = 0;                  // the point; or the first vertex of the grain to which its patch belongs
+  const PatchNet* own = nullptr;  // whose middle it is
+  bool faces = false;             // a patch of another grain
+  std::array<int, 16> vertex{};   // of that
+  std::array<double, 16> weight{};
+  Vec<3> normal, offset;
+  double delassus = 0, inverse_delassus = 0;
+
+  LumpedRow() = default;
+  LumpedRow(const SurfaceContact& met, std::span<const double> inverse_mass)
+      : begin(met.own != nullptr ? met.own_begin : met.vertex),
+        own(met.own),
+        faces(met.wall < 0),
+        vertex(met.master),
+        weight(met.weight),
+        normal(met.normal) {
+    met.for_each_vertex([&](int v, double w) { delassus += w * w * inverse_mass[v]; });
+  }
+
+  [[gnu::always_inline]] Vec<3> velocity(const PaddedVec* v) const {
+    Lanes u = own == nullptr ? load_lanes(v[begin]) : sum(own->vertex, own->middle, v + begin);
+    if (faces) u -= sum(vertex, weight, v);
+    return {u[0], u[1], u[2]};
+  }
+  [[gnu::always_inline]] void push(const Vec<3>& P, PaddedVec* v, const double* inverse_mass) const {
+    const Lanes by{P[0], P[1], P[2], 0};
+    if (own == nullptr)
+      store_lanes(load_lanes(v[begin]) + inverse_mass[begin] * by, v[begin]);
+    else
+      push(own->vertex, own->middle, by, v + begin, inverse_mass + begin);
+    if (faces) push(vertex, weight, -by, v, inverse_mass);
+  }
+
+ private:
+  [[gnu::always_inline]] static Lanes sum(const std::array<int, 16>& at, const std::array<double, 16>& w,
+                                          const PaddedVec* v) {
+    Lanes even{}, odd{};
+    for (std::size_t k = 0; k < 16; k += 2) {
+      even += w[k] * load_lanes(v[at[k]]);
+      odd += w[k + 1] * load_lanes(v[at[k + 1]]);
+    }
+    return even + odd;
+  }
+  [[gnu::always_inline]] static void push(const std::array<int, 16>& at, const std::array<double, 16>& w,
+                                          Lanes P, PaddedVec* v, const double* inverse_mass) {
+    for (std::size_t k = 0; k < 16; ++k)
+      store_lanes(load_lanes(v[at[k]]) + (w[k] * inverse_mass[at[k]]) * P, v[at[k]]);
+  }
+};
+
+}  // namespace softgrain

@@ -1,0 +1,62 @@
+#include "softgrain/soft/carried_impulses.hpp"
+#include "softgrain/soft/surface_contacts.hpp"
+#include "softgrain/soft/surface_lists.hpp"
+
+// What a contact in space that was found says once its bodies have moved.
+
+namespace softgrain {
+
+Vec<3> place_of(const SurfaceContact& contact, std::span<const Vec<3>> x) {
+  if (contact.own == nullptr) return x[contact.vertex];
+  Vec<3> place;
+  contact.for_each_own_vertex([&](int v, double weight) { place += weight * x[v]; });
+  return place;
+}
+
+double gap_now(const SurfaceContact& contact, const OutlineStateOf<3>& state) {
+  Vec<3> apart = Vec<3>{} - contact.image;
+  if (contact.wall >= 0) apart -= state.walls[contact.wall].point;
+  contact.for_each_vertex([&](int v, double weight) { apart += weight * state.position[v]; });
+  return dot(apart, contact.normal) - contact.offset;
+}
+
+double offset_of(const SurfaceContact& contact, const SolidGrains& grains) {
+  double sum = 0;
+  const auto add = [&](int vertex) {
+    const int grain = grains.grain_of_vertex(vertex);
+    if (grains.topology(grain).ball) sum += grains.radius(grain);
+  };
+  add(contact.vertex);
+  if (contact.wall < 0) add(contact.master[5]);
+  return sum;
+}
+
+void update_gap(SurfaceContact& contact, const OutlineStateOf<3>& state) {
+  if (contact.wall < 0) set_image(contact, contact.master[5], state);
+  contact.gap = gap_now(contact, state);
+}
+
+Vec<3> relative_displacement(const SurfaceContact& contact, const OutlineStateOf<3>& state) {
+  Vec<3> displacement = Vec<3>{} - contact.image_motion;
+  if (contact.wall >= 0) displacement -= state.dt * state.walls[contact.wall].velocity;
+  contact.for_each_vertex(
+      [&](int v, double weight) { displacement += weight * (state.position[v] - state.start[v]); });
+  if (contact.offset > 0) {  // omega x (-R n) of either side
+    displacement -= cross(state.rolled[contact.vertex], contact.normal);
+    if (contact.wall < 0) displacement -= cross(state.rolled[contact.master[5]], contact.normal);
+  }
+  return displacement;
+}
+
+std::vector<Vec<3>> carried_impulses(const SolidGrains& grains, std::span<const SurfaceContact> old,
+                                     std::span<const Vec<3>> old_impulse,
+                                     std::span<const SurfaceContact> contacts) {
+  return carry_impulses(
+      old, old_impulse, contacts, [](const SurfaceContact& c) { return c.point; },
+      [&](const SurfaceContact& c) { return facing_grain(c, grains); },
+      [](const SurfaceContact& was, const Vec<3>& impulse, const SurfaceContact& now) {
+        return to_local(now.normal, impulse_vector(was, impulse));
+      });
+}
+
+}  // namespace softgrain
