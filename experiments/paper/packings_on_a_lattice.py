@@ -2,11 +2,12 @@
 
     packings_on_a_lattice.py RUN ... -o DIR
 
-Runs of `compaction-mpm` with mpm.formulation = "updated_lagrangian" and mpm.lattice_integrator = "implicit". Writes
-DIR/lattice_packings.csv, one row a run, DIR/lattice_curves.csv, and DIR/lattice_packings.png.
+Runs of `compaction-mpm` with mpm.formulation = "updated_lagrangian" and mpm.lattice_integrator = "implicit". Adds them to
+DIR/lattice_packings.csv, one row a run, and DIR/lattice_curves.csv, and draws all that stand there, DIR/lattice_packings.png.
 """
 
 import argparse
+import csv
 from pathlib import Path
 
 import matplotlib
@@ -23,6 +24,7 @@ from softgrain.reproduce.tables import write_rows
 
 HEADER = ("contact on", "cell / mean R", "friction", "grains", "seed", "Z at a strain of 0.08", "Z = 3 at a strain of", "Phi_0 there",
           "bottom bears 20 kPa from", "Phi_0 there", "largest energy error / wall work", "steps")
+KEY = 5  # columns that name a run
 SHOWN = np.arange(0, 0.301, 0.01)
 
 
@@ -63,17 +65,16 @@ class Packing:
                    float(np.interp(strain, self.strain, self.bottom)))
 
 
-def draw(packings, path):
-    figure, axes = plt.subplots(1, 2, figsize=(7.2, 2.9), layout="constrained")
-    seen = set()
-    for packing in packings:
-        contact_on, cell, friction, grains = packing.key
-        name = f"{contact_on.replace('_', ' ')}, {grains} grains, {cell:.3f} R" + (", mu = 0.5" if friction else "")
-        style = {"color": COLOURS[contact_on], "lw": 0.6 + grains / 60, "ls": "--" if friction else "-",
-                 "alpha": 0.5 if cell > 0.1 else 1, "label": None if name in seen else name}
-        seen.add(name)
-        axes[0].plot(packing.z_strain, packing.z, **style)
-        axes[1].plot(packing.strain, packing.bottom / 1e3, **style)
+def draw(curves, path):
+    """`curves`: {key and seed: rows of strain, Z, stress on the bottom [Pa]}."""
+    figure, axes = plt.subplots(1, 2, figsize=(7.2, 3.1), layout="constrained")
+    for (contact_on, cell, friction, grains, _), rows in sorted(curves.items()):
+        strain, z, bottom = np.array(rows, float).T
+        style = {"color": COLOURS[contact_on], "lw": 0.7 * (float(grains) / 20) ** 0.35, "ls": "--" if float(friction) else "-",
+                 "alpha": 0.6 if float(cell) > 0.1 and float(grains) < 100 else 1,
+                 "label": f"{contact_on.replace('_', ' ')}, {grains} grains, {float(cell):.3f} R" + (", mu = 0.5" if float(friction) else "")}
+        axes[0].plot(strain, z, **style)
+        axes[1].plot(strain, bottom / 1e3, **style)
     axes[0].plot(0.08, 3, "s", color="#cc79a7", label="the paper")
     axes[0].set(xlabel="strain", ylabel="Z, of pairs that bear load", xlim=(0, 0.17), ylim=(0, 5))
     axes[1].set(xlabel="strain", ylabel="stress on the bottom [kPa]", xlim=(0, 0.17), ylim=(0, 200))
@@ -85,16 +86,32 @@ def text(row):
     return [f"{value:.4g}" if isinstance(value, float) else value for value in row]
 
 
+def rows_by_run(path, header, rows):
+    """{key and seed: [the rest of each row]} of the table at `path`, if there is one, and of `rows`, which replace those of
+    the same run; the table is written anew."""
+    kept = {}
+    if path.exists():
+        with open(path, newline="") as file:
+            for row in list(csv.reader(file))[1:]:
+                kept.setdefault(tuple(row[:KEY]), []).append(row[KEY:])
+    new = {}
+    for row in rows:
+        new.setdefault(tuple(map(str, row[:KEY])), []).append(row[KEY:])
+    kept |= new
+    write_rows(path, header, ([*key, *row] for key in sorted(kept) for row in kept[key]))
+    return kept
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("runs", nargs="+", metavar="RUN")
+    parser.add_argument("runs", nargs="*", metavar="RUN")
     parser.add_argument("-o", "--output", type=Path, required=True)
     options = parser.parse_args()
-    packings = sorted((Packing(Path(path)) for path in options.runs), key=lambda packing: (*packing.key, packing.seed))
-    write_rows(options.output / "lattice_packings.csv", HEADER, (text(packing.row()) for packing in packings))
-    write_rows(options.output / "lattice_curves.csv", (*HEADER[:5], "strain", "Z", "stress on the bottom [Pa]"),
-               (text(row) for packing in packings for row in packing.curve()))
-    draw(packings, options.output / "lattice_packings.png")
+    packings = [Packing(Path(path)) for path in options.runs]
+    rows_by_run(options.output / "lattice_packings.csv", HEADER, [text(packing.row()) for packing in packings])
+    curves = rows_by_run(options.output / "lattice_curves.csv", (*HEADER[:KEY], "strain", "Z", "stress on the bottom [Pa]"),
+                         [text(row) for packing in packings for row in packing.curve()])
+    draw(curves, options.output / "lattice_packings.png")
 
 
 if __name__ == "__main__":

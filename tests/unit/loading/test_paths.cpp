@@ -29,6 +29,22 @@ TEST_CASE("a biaxial path confines, and compresses while the sides keep their st
   CHECK(run.loading.outcome().shortfall.empty());
 }
 
+TEST_CASE("sides that keep their stress beside a wall that moves have a fifth of the time of a press alone") {
+  const auto sides = [](double speed, double step) {
+    SpringRun run =
+        run_of({{.drives = {moves(Part::yy, speed), keeps(Part::xx, target)}, .until = {.time = 1}}}, 0);
+    run.loading.drive(run.box, run.model, 0, step);
+    REQUIRE(run.box.presses.size() == 1);
+    return run.box.presses[0];
+  };
+  const Press alone = sides(0, dt), beside = sides(v, dt);
+  CHECK(std::abs(beside.time() / alone.time() - 0.2) < 1e-12);
+  // the same stiffness m/tau^2, so critically damped as before
+  CHECK(std::abs(beside.mass / std::pow(beside.time(), 2) * std::pow(alone.time(), 2) / alone.mass - 1) < 1e-12);
+  const Press half = sides(v, 5 * alone.time());  // a tenth of a step is half of the time
+  CHECK(std::abs(half.time() / alone.time() - 0.5) < 1e-12);
+}
+
 TEST_CASE("a die presses with its top wall to a stress, keeps it, and lets go") {
   SpringRun run =
       run_of({.wall_velocity = v, .max_strain = 0.3, .max_stress = target, .unload_at = {}, .hold = 5e-3},
