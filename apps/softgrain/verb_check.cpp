@@ -73,6 +73,7 @@ void print_json(const CaseReading& reading, const Estimate& estimate, const Advi
                                         {"inertial_number", advice.inertial_number},
                                         {"stress", advice.stress},
                                         {"blow", advice.blow},
+                                        {"hold", finite(advice.hold)},
                                         {"cohesive_zone", finite(adhesion.zone)}}},
                                       {"without_effect", reading.without_effect},
                                       {"notes", notes_of(reading)}};
@@ -151,6 +152,12 @@ void print_advice(const Advice& advice, double newton_tolerance) {
         "warning: mpm.tolerance leaves stresses of about {:.2g} times the yield stress unbalanced, and "
         "what springs back may be wrong: lower it to {:.0e}\n",
         advice.imbalance, newton_tolerance * most_of_an_imbalance / advice.imbalance / 3);
+  if (advice.hold < Advice::least_hold)
+    fmt::print(
+        stderr,
+        "warning: a stress is kept for {:.2g} times as long as a wave takes through the box, and judged from "
+        "half of that on, while walls may still come in: keep it for {:.1g} times as long\n",
+        advice.hold, std::ceil(Advice::least_hold / advice.hold));
   if (advice.time_step > advice.longest_step)
     fmt::print(stderr,
                "warning: the time step is {:.2g} times the longest stable one, {}: take that, or less\n",

@@ -1,5 +1,6 @@
 #include "softgrain/experiment/advice.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -63,6 +64,14 @@ double imbalance_of(const Case& c) {
   return c.mpm.tolerance * c.mpm.material.young_modulus / c.mpm.material.yield_stress;
 }
 
+/// c [m/s], of bonded grains as stiff as their bonds, 10 sigma_I; 0 of rigid ones.
+double wave_of(const Case& c) {
+  if (!c.kinds.empty()) return largest_of_kinds(c, wave_of);
+  if (is_rigid(c)) return 0;
+  if (!is_elastic(c)) return std::sqrt(10 * bond_stress(c) / c.grain.density);
+  return wave_speed(make_law(c.mpm.law, c.mpm.material), c.grain.density);
+}
+
 double diameter_of(const Case& c) {
   if (!is_in_a_box(c)) return 2 * c.grain.radius;
   return sum_of_kinds(
@@ -73,6 +82,16 @@ double diameter_of(const Case& c) {
 
 /// Height of the box, or of the grain between walls, at the start [m].
 double height_of(const Case& c) { return is_in_a_box(c) ? box_height(c) : 2 * c.grain.radius; }
+
+double hold_of(const Case& c) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Stage& stage : stages_of(c))
+    if (stage.until.time && std::any_of(stage.drives.begin(), stage.drives.end(),
+                                        [](const Drive& drive) { return drive.control == Control::stress; }))
+      shortest = std::min(shortest, *stage.until.time);
+  const double wave = wave_of(c);
+  return wave > 0 ? shortest * wave / height_of(c) : std::numeric_limits<double>::infinity();
+}
 
 double density_of(const Case& c) {
   return largest_of_kinds(c, [](const Case& kind) { return kind.grain.density; });
@@ -115,6 +134,7 @@ Advice advise(const Case& c) {
   }
   advice.blow = blow_of(c);
   advice.imbalance = imbalance_of(c);
+  advice.hold = hold_of(c);
   return advice;
 }
 

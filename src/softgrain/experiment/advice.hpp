@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,12 @@ struct Advice {
   /// mpm.tolerance times E over the yield stress, of grains that flow in implicit steps: how far from balance
   /// Newton's method may leave them, by its last correction over R. 0 where nothing yields.
   double imbalance = 0;
+  /// The shortest time for which walls keep a stress over L/c, in which a wave crosses the box, L its height
+  /// at the start. Below least_hold walls still come in when they are judged. Infinite where none keep a
+  /// stress for a time, and for rigid grains.
+  double hold = std::numeric_limits<double>::infinity();
+
+  static constexpr double least_hold = 8;  ///< docs/decisions/0073
 };
 
 /// Rate of strain [1/s] at which the inertial number is loading.inertial_number, at the stress of Advice:

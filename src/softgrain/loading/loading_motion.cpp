@@ -14,8 +14,8 @@ constexpr double steps_behind = 30;
 /// rearrange push them faster than those.
 constexpr double beside_motion = 50;
 
-/// Of the time tau of a press, beside walls that others move: there its own mass and damper are what its stress
-/// errs by (docs/decisions/0073).
+/// Of the time tau of a press, beside walls that others move: there its own mass and damper are what its
+/// stress errs by (docs/decisions/0073).
 constexpr double quicker_beside_motion = 0.2;
 
 /// Of the way of a stage: less is no step more.

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "softgrain/experiment/estimate.hpp"
+
 using namespace softgrain;
 
 TEST_CASE(
@@ -22,4 +24,26 @@ TEST_CASE(
   c.mpm.integrator = Integrator::backward_euler;
   c.mpm.law = MaterialLaw::neo_hookean;
   CHECK(advise(c).imbalance == 0);
+}
+
+TEST_CASE("how long a stress is kept is told in times of a wave through the box") {
+  Case c;
+  c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::bpm};
+  c.bpm.cohesive_pressure = 5e5;
+  c.grain.density = 990;
+  c.sample.grains = 300;
+  c.sample.packing_fraction = 0.7;
+  CHECK(std::isinf(advise(c).hold));
+  c.loading.hold_stress = 5e5;
+  c.loading.hold = 2e-3;
+  const double bonded = advise(c).hold;
+  CHECK(std::abs(bonded / (2e-3 * std::sqrt(5e6 / 990) / box_height(c)) - 1) < 1e-12);
+  CHECK(bonded < Advice::least_hold);  // 300 bonded grains that are held for 2 ms
+  c.experiment.model = GrainModel::mpm;
+  c.mpm.law = MaterialLaw::neo_hookean;
+  c.mpm.material = {.young_modulus = 1e7, .poisson_ratio = 0.45};
+  const double modulus = 1e7 * 0.55 / (1.45 * 0.1);  // E (1 - nu)/((1 + nu)(1 - 2 nu))
+  CHECK(std::abs(advise(c).hold / (2e-3 * std::sqrt(modulus / 990) / box_height(c)) - 1) < 1e-12);
+  c.experiment.model = GrainModel::rigid;
+  CHECK(std::isinf(advise(c).hold));
 }

@@ -193,6 +193,8 @@ TEST_CASE("side walls keep their stress within 5 % at any time while the grains 
   c.sample.grains = 12;
   c.sample.packing_fraction = 0.7;
   c.loading.wall_velocity = 0.1;
+  c.contact.wall_friction = 0;
+  c.loading.max_strain = 0.2;
   c.loading.confining_stress = 1e5;
   c.loading.hold = 10e-3;
   const auto simulation = create_simulation(c);

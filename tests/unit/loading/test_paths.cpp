@@ -40,7 +40,8 @@ TEST_CASE("sides that keep their stress beside a wall that moves have a fifth of
   const Press alone = sides(0, dt), beside = sides(v, dt);
   CHECK(std::abs(beside.time() / alone.time() - 0.2) < 1e-12);
   // the same stiffness m/tau^2, so critically damped as before
-  CHECK(std::abs(beside.mass / std::pow(beside.time(), 2) * std::pow(alone.time(), 2) / alone.mass - 1) < 1e-12);
+  CHECK(std::abs(beside.mass / std::pow(beside.time(), 2) * std::pow(alone.time(), 2) / alone.mass - 1) <
+        1e-12);
   const Press half = sides(v, 5 * alone.time());  // a tenth of a step is half of the time
   CHECK(std::abs(half.time() / alone.time() - 0.5) < 1e-12);
 }
