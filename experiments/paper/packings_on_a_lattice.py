@@ -65,20 +65,38 @@ class Packing:
                    float(np.interp(strain, self.strain, self.bottom)))
 
 
+def outline_curve(path):
+    """Strain, Z of all pairs that touch, stress on the bottom [Pa] of the first sample: the same grains at the same speed."""
+    with open(path, newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["seed"] == "1"]
+    return (np.array([float(row[name]) for row in rows]) for name in ("strain", "z", "stress_bottom[Pa]"))
+
+
+def _friction(mu):
+    return f", mu = {mu}" if float(mu) else ""
+
+
 def draw(curves, path):
     """`curves`: {key and seed: rows of strain, Z, stress on the bottom [Pa]}."""
-    figure, axes = plt.subplots(1, 2, figsize=(7.2, 3.1), layout="constrained")
+    figure, axes = plt.subplots(1, 3, figsize=(8.2, 3), layout="constrained", gridspec_kw={"width_ratios": (1, 1, 0.55)})
     for (contact_on, cell, friction, grains, _), rows in sorted(curves.items()):
         strain, z, bottom = np.array(rows, float).T
         style = {"color": COLOURS[contact_on], "lw": 0.7 * (float(grains) / 20) ** 0.35, "ls": "--" if float(friction) else "-",
                  "alpha": 0.6 if float(cell) > 0.1 and float(grains) < 100 else 1,
-                 "label": f"{contact_on.replace('_', ' ')}, {grains} grains, {float(cell):.3f} R" + (", mu = 0.5" if float(friction) else "")}
+                 "label": f"{contact_on.replace('_', ' ')}, {grains} grains, {float(cell):.3f} R" + _friction(friction)}
+        axes[0].plot(strain, z, **style)
+        axes[1].plot(strain, bottom / 1e3, **style)
+    for friction, line in (("0", "-"), ("0.5", "--")):
+        strain, z, bottom = outline_curve(Path(__file__).parent / f"results/paper_size/packing_mpm_mu{friction}.csv")
+        style = {"color": "black", "lw": 1.2, "ls": line, "label": "outline, 300 grains, total Lagrangian" + _friction(friction)}
         axes[0].plot(strain, z, **style)
         axes[1].plot(strain, bottom / 1e3, **style)
     axes[0].plot(0.08, 3, "s", color="#cc79a7", label="the paper")
     axes[0].set(xlabel="strain", ylabel="Z, of pairs that bear load", xlim=(0, 0.17), ylim=(0, 5))
     axes[1].set(xlabel="strain", ylabel="stress on the bottom [kPa]", xlim=(0, 0.17), ylim=(0, 200))
-    axes[0].legend(frameon=False, fontsize=5, loc="lower right")
+    handles, labels = axes[0].get_legend_handles_labels()
+    axes[2].axis("off")
+    axes[2].legend(handles, labels, frameon=False, fontsize=6, loc="center left")
     figure.savefig(path, dpi=150)
 
 
