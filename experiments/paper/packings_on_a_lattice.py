@@ -57,7 +57,8 @@ class Packing:
     def row(self):
         z_3, bears = first(self.z_strain, self.z, 3), first(self.strain, self.bottom, BEARS)
         phi = [self.start * np.exp(strain) for strain in (z_3, bears)]
-        return (*self.key, self.seed, float(np.interp(AT, self.z_strain, self.z)), z_3, phi[0], bears, phi[1], self.error, self.steps)
+        z_at = float(np.interp(AT, self.z_strain, self.z, right=float("nan")))
+        return (*self.key, self.seed, z_at, z_3, phi[0], bears, phi[1], self.error, self.steps)
 
     def curve(self):
         for strain in SHOWN[SHOWN <= self.strain[-1] + 1e-9]:
