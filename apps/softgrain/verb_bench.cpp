@@ -71,14 +71,13 @@ Measured measured_once(const Case& the_case) {
   for (; !simulation->finished(); ++steps) sweeps += simulation->step().sweeps;
   const double taken = cpu_seconds() - ready, waited = all.account.cpu_exchanges - before.cpu_exchanges;
   const std::chrono::duration<double> wall = Clock::now() - clock;
-  const double shared = all.account.cpu_shared - before.cpu_shared, mean = all.sum(shared) / all.ranks();
-  const double largest = 1e-6 * static_cast<double>(all.largest(std::llround(1e6 * shared)));
+  const OverRanks shared = over_ranks(all.account.cpu_shared - before.cpu_shared);
   return {.preparation = ready - begin,
           .steps_cpu = all.sum(taken - waited),
           .steps_wall = wall.count(),
           .steps = steps,
           .sweeps = static_cast<double>(sweeps) / static_cast<double>(steps),
-          .imbalance = mean > 0 ? largest / mean : 1};
+          .imbalance = shared.largest_over_mean()};
 }
 
 Measured measured(const Case& the_case, int rounds) {

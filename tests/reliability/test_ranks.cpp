@@ -56,12 +56,14 @@ std::vector<TinyCase> packings() {
     words.insert(words.end(), quick.begin(), quick.end());
     return words;
   };
-  return {packing("smooth-bonded", "compaction-bpm",
-                  with({"contact.friction=0", "contact.wall_friction=0", "bpm.inner_friction=0"})),
-          packing("rough-bonded", "compaction-bpm", with({"contact.friction=0.5"})),
-          packing("explicit", "compaction-mpm",
-                  with({"mpm.integrator=\"explicit\"", "time.step=0", "contact.friction=0.5"})),
-          packing("implicit", "compaction-mpm", with({"contact.friction=0.5"}))};
+  return {
+      packing("smooth-bonded", "compaction-bpm",
+              with({"contact.friction=0", "contact.wall_friction=0", "bpm.inner_friction=0"})),
+      packing("rough-bonded", "compaction-bpm",
+              with({"contact.friction=0.5", "contact.surface_energy=4", "contact.wall_surface_energy=4"})),
+      packing("explicit", "compaction-mpm",
+              with({"mpm.integrator=\"explicit\"", "time.step=0", "contact.friction=0.5"})),
+      packing("implicit", "compaction-mpm", with({"contact.friction=0.5"}))};
 }
 
 /// The processes that a process has begun.
@@ -89,9 +91,9 @@ TEST_CASE("a run has the same bits on any number of ranks and threads") {
   struct Team {
     int ranks, threads;
   };
-  const std::vector<Team> teams =
-      torture() ? std::vector<Team>{{1, 1}, {1, 2}, {2, 1}, {2, 2}, {3, 1}, {3, 2}, {4, 1}, {4, 2}, {8, 1}}
-                : std::vector<Team>{{3, 1}};
+  const std::vector<Team> teams = torture() ? std::vector<Team>{{1, 1}, {1, 2}, {2, 1}, {2, 2}, {3, 1},
+                                                                {3, 2}, {4, 1}, {4, 2}, {8, 1}, {8, 2}}
+                                            : std::vector<Team>{{3, 1}};
   for (const TinyCase& tiny : cases) {
     CAPTURE(tiny.name);
     const std::string alone = tiny.name + "_alone";
@@ -113,8 +115,31 @@ TEST_CASE("a run has the same bits on any number of ranks and threads") {
   }
 }
 
+TEST_CASE("a run has the same bits however unequal the parts of the ranks are") {
+  Ranks ranks;
+  for (const TinyCase& tiny : packings()) {
+    CAPTURE(tiny.name);
+    const std::string alone = tiny.name + "_alone";
+    const ProcessResult plain = run_tiny(ranks.workshop, tiny, alone, {"-j", "1"});
+    for (const char* seed : torture() ? std::vector{"1", "2", "3", "4"} : std::vector{"1"}) {
+      CAPTURE(seed);
+      const std::string together = tiny.name + "_parts_" + seed;
+      if (!torture())
+        copy_cut_off(ranks.workshop, alone, together, ranks.workshop.snapshots(alone).size() - 1);
+      ranks.workshop.environment["SOFTGRAIN_PARTITION"] = seed;
+      const ProcessResult result = ranks.on(4, ranks.begin(tiny, together, {"-j", "1", "--resume"}));
+      ranks.workshop.environment.erase("SOFTGRAIN_PARTITION");
+      CAPTURE(result.err);
+      REQUIRE(result.exit_code == plain.exit_code);
+      CHECK(ranks.workshop.last_hash(together) == ranks.workshop.last_hash(alone));
+      const bool same_series = ranks.workshop.series(together) == ranks.workshop.series(alone);
+      CHECK(same_series);
+    }
+  }
+}
+
 TEST_CASE("a killed rank ends all, and other numbers of ranks go on to the same end") {
-  const Ranks ranks;
+  Ranks ranks;
   TinyCase tiny = packings()[1];
   REQUIRE(run_tiny(ranks.workshop, tiny, "whole").exit_code == 0);
   if (!torture())
@@ -124,6 +149,7 @@ TEST_CASE("a killed rank ends all, and other numbers of ranks go on to the same 
     for (int k = 0; k < 20; ++k) counts.push_back(std::vector{4, 3, 1, 8}[k % 4]);
   for (std::size_t k = 0; k + 1 < counts.size(); ++k) {
     CAPTURE(k);
+    ranks.workshop.environment["SOFTGRAIN_PARTITION"] = std::to_string(k);  // each time other grains
     const std::size_t before = ranks.workshop.snapshots("killed").size();
     Process mpirun(Ranks::command(counts[k], ranks.begin(tiny, "killed", {"--resume"})),
                    ranks.workshop.environment, ranks.workshop.here());
@@ -136,6 +162,7 @@ TEST_CASE("a killed rank ends all, and other numbers of ranks go on to the same 
     CHECK(Clock::now() - begin < std::chrono::seconds(30));
     if (!ends) CHECK(exit_code == 128 + SIGKILL);
   }
+  ranks.workshop.environment.erase("SOFTGRAIN_PARTITION");
   CHECK(ranks.on(counts.back(), {"resume", "killed", "-q"}).exit_code == 0);
   CHECK(ranks.workshop.intact("killed"));
   CHECK(ranks.workshop.last_hash("killed") == ranks.workshop.last_hash("whole"));

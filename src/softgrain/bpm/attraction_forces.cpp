@@ -92,7 +92,10 @@ template <int Dim>
 void AttractionForcesOf<Dim>::update(const RigidParticles<Dim>& particles,
                                      const NeighbourReference<Dim>& reference, const Shares& shares) {
   rows_.resize(reference.grains.size());
-  for (std::size_t g = 0; g < rows_.size(); ++g) rows_[g].grain = reference.grains[g];
+  for (std::size_t g = 0; g < rows_.size(); ++g) {
+    if (!shares.mine(static_cast<int>(g)) && rows_[g].made >= 0) rows_[g] = {};
+    rows_[g].grain = reference.grains[g];
+  }
   own_for(shares, static_cast<int>(rows_.size()), [&](int g) {
     if (rows_[g].made == reference.made[g]) return;
     rows_[g] = rows_of(particles, reference, reference.grains[g]);
@@ -125,12 +128,7 @@ typename AttractionForcesOf<Dim>::Rows AttractionForcesOf<Dim>::rows_of(
 template <int Dim>
 void AttractionForcesOf<Dim>::add_forces(const RigidParticles<Dim>& particles, std::span<Vec<Dim>> force,
                                          const Shares& shares) const {
-  shared_for(
-      shares, static_cast<int>(rows_.size()), [&](int g) { add_forces(particles, rows_[g], force); },
-      [&](int g, Message& message) {
-        const GrainRange& grain = rows_[g].grain;
-        message(force.subspan(grain.begin, grain.end - grain.begin));
-      });
+  own_for(shares, static_cast<int>(rows_.size()), [&](int g) { add_forces(particles, rows_[g], force); });
 }
 
 template <int Dim>

@@ -21,12 +21,12 @@ class AttractionForcesOf {
   explicit AttractionForcesOf(std::vector<Attraction> laws);
 
   /// Makes the lists of grains again whose reference has moved on: all pairs closer than 2 a0 + skin there.
-  /// Of all grains, or of those of this rank.
+  /// Of all grains, or of those of this rank alone.
   void update(const RigidParticles<Dim>& particles, const NeighbourReference<Dim>& reference,
               const Shares& shares = {});
 
-  /// F_i += sum_j F(r_ij) (x_j - x_i)/r_ij  [N/m, N in space]; with shares each rank needs the lists of its
-  /// own grains.
+  /// F_i += sum_j F(r_ij) (x_j - x_i)/r_ij  [N/m, N in space], on the primaries of all grains, or of those of
+  /// this rank.
   void add_forces(const RigidParticles<Dim>& particles, std::span<Vec<Dim>> force,
                   const Shares& shares = {}) const;
 

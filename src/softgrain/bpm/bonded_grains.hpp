@@ -92,6 +92,7 @@ class BondedGrainsOf final : public ModelOf<Dim> {
     double height_start = 0;           // of them that of gravity
   };
   void add_work();
+  void list_attraction();
   double energy_of_attraction() const;               // inside grains and between them
   double solid_fraction(const Box<Dim>& box) const;  // of the box that primaries fill
   int clusters() const;

@@ -40,7 +40,11 @@ void BondedGrainsOf<Dim>::visit(StateVisitor& visit) {
                       std::move(reference.wall_point), list_cell);
     dynamics_.rebuild_contacts();
   }
-  visit_impulses(dynamics_.contacts, visit);
+  visit_impulses(dynamics_.contacts, visit, [&](std::int64_t a, std::int64_t b) {
+    if (reference.shares.alone() || !(0 <= a && a < b && b < particles.size())) return true;
+    const int grain = particles.grain[a];
+    return grain != particles.grain[b] || reference.shares.mine(grain);
+  });
 }
 
 template <int Dim>
@@ -67,7 +71,21 @@ void BondedGrainsOf<Dim>::go_on(const Box<Dim>& box) {
   dynamics_.particles.walls = box.walls;
   dynamics_.particles.cell = dynamics_.contacts.cell = box.cell;
   detect_contacts(dynamics_.particles, dynamics_.contacts);
-  attraction_.update(dynamics_.particles, dynamics_.reference);
+  list_attraction();
+}
+
+template <int Dim>
+void BondedGrainsOf<Dim>::gather() {
+  dynamics_.gather();
+  list_attraction();
+}
+
+/// Of all grains on the first rank, which alone is asked for energies; elsewhere of this rank's.
+template <int Dim>
+void BondedGrainsOf<Dim>::list_attraction() {
+  const bool of_all = communicator().rank() == 0;
+  attraction_.update(dynamics_.particles, dynamics_.reference,
+                     of_all ? Shares() : dynamics_.reference.shares);
 }
 
 template void BondedGrainsOf<2>::visit(StateVisitor&);
@@ -78,5 +96,9 @@ template void BondedGrainsOf<2>::set(const Settings&);
 template void BondedGrainsOf<3>::set(const Settings&);
 template void BondedGrainsOf<2>::go_on(const Box<2>&);
 template void BondedGrainsOf<3>::go_on(const Box<3>&);
+template void BondedGrainsOf<2>::gather();
+template void BondedGrainsOf<3>::gather();
+template void BondedGrainsOf<2>::list_attraction();
+template void BondedGrainsOf<3>::list_attraction();
 
 }  // namespace softgrain

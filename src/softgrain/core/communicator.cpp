@@ -1,5 +1,6 @@
 #include "softgrain/core/communicator.hpp"
 
+#include <cmath>
 #include <ctime>
 #include <utility>
 #include <vector>
@@ -21,6 +22,13 @@ Communicator& communicator() { return *own(); }
 void use_communicator(std::unique_ptr<Communicator> communicator) { own() = std::move(communicator); }
 
 double process_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+OverRanks over_ranks(double number) {
+  constexpr double millionths = 1e6;
+  Communicator& all = communicator();
+  return {.mean = all.sum(number) / all.ranks(),
+          .largest = static_cast<double>(all.largest(std::llround(millionths * number))) / millionths};
+}
 
 std::string told(const std::string& text, int from) {
   Communicator& all = communicator();

@@ -29,10 +29,10 @@ std::chrono::seconds longest_wait() {
   return std::chrono::seconds(wanted > 0 ? wanted : seconds);
 }
 
-/// Counts an exchange and its CPU time.
+/// Counts what all ranks exchange, or messages to single ones, and their CPU time.
 class Timed {
  public:
-  explicit Timed(SharingAccount& account) : account_(account) { ++account.exchanges; }
+  explicit Timed(SharingAccount& account) : account_(account) {}
   Timed(const Timed&) = delete;
   Timed& operator=(const Timed&) = delete;
   ~Timed() { account_.cpu_exchanges += process_seconds() - begin_; }
@@ -66,6 +66,7 @@ class MpiCommunicator final : public Communicator {
 
   void gather(std::span<std::byte> all, std::span<const std::size_t> begin) override {
     const Timed timed(account);
+    ++account.exchanges;
     constexpr std::size_t most = 1U << 30U;  // MPI 3 counts in int
     if (all.size() > most)
       throw NumericalError(fmt::format(
@@ -84,8 +85,27 @@ class MpiCommunicator final : public Communicator {
     account.bytes_received += static_cast<std::int64_t>(begin[ranks_]) - count[rank_];
   }
 
+  void swap(std::span<const Parcel> parcels) override {
+    if (parcels.empty()) return;
+    const Timed timed(account);
+    std::vector<MPI_Request> requests;
+    for (const Parcel& parcel : parcels) {
+      const auto send = static_cast<int>(parcel.out.size()), receive = static_cast<int>(parcel.in.size());
+      MPI_Request& request = requests.emplace_back(MPI_REQUEST_NULL);
+      if (send > 0)
+        MPI_Isend(parcel.out.data(), send, MPI_BYTE, parcel.rank, parcel.label, MPI_COMM_WORLD, &request);
+      else if (receive > 0)
+        MPI_Irecv(parcel.in.data(), receive, MPI_BYTE, parcel.rank, parcel.label, MPI_COMM_WORLD, &request);
+      account.messages += send > 0 ? 1 : 0;
+      account.bytes_sent += send;
+      account.bytes_received += receive;
+    }
+    for (MPI_Request& request : requests) wait_for(request);
+  }
+
   std::int64_t largest(std::int64_t number) override {
     const Timed timed(account);
+    ++account.exchanges;
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Iallreduce(MPI_IN_PLACE, &number, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD, &request);
     wait_for(request);
@@ -94,6 +114,7 @@ class MpiCommunicator final : public Communicator {
 
   double sum(double number) override {
     const Timed timed(account);
+    ++account.exchanges;
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Iallreduce(MPI_IN_PLACE, &number, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD, &request);
     wait_for(request);

@@ -1,5 +1,9 @@
 #include "softgrain/core/shared_loop.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <new>
 #include <numeric>
@@ -37,6 +41,23 @@ std::string text_of(const std::exception_ptr& error) {
   }
 }
 
+/// The weights, or with SOFTGRAIN_PARTITION others that differ by up to a thousand times.
+std::vector<double> weights_for_tests(std::span<const double> given) {
+  std::vector<double> weight(given.begin(), given.end());
+  const char* wish = std::getenv("SOFTGRAIN_PARTITION");
+  const auto seed = static_cast<std::uint64_t>(wish != nullptr ? std::atoi(wish) : 0);
+  if (seed == 0) return weight;
+  constexpr int bits = 64, decades = 3;
+  std::uint64_t unit = 0;
+  for (double& w : weight) {
+    std::uint64_t mixed = (seed << 32U) + ++unit;  // splitmix64
+    mixed = (mixed ^ (mixed >> 30U)) * 0xbf58476d1ce4e5b9U;
+    mixed = (mixed ^ (mixed >> 27U)) * 0x94d049bb133111ebU;
+    w *= std::pow(10, decades * std::ldexp(static_cast<double>(mixed ^ (mixed >> 31U)), -bits));
+  }
+  return weight;
+}
+
 [[noreturn]] void raise_text(const std::string& text) {
   const std::string words = text.substr(1);
   switch (static_cast<Kind>(text.front())) {
@@ -56,9 +77,10 @@ std::string text_of(const std::exception_ptr& error) {
 }  // namespace
 
 /// Ends at the middles of equal parts of the whole weight.
-Shares::Shares(std::span<const double> weight) {
-  const int ranks = communicator().ranks(), units = static_cast<int>(weight.size());
+Shares::Shares(std::span<const double> given) {
+  const int ranks = communicator().ranks(), units = static_cast<int>(given.size());
   if (ranks == 1) return;
+  const std::vector<double> weight = weights_for_tests(given);
   const double whole = std::accumulate(weight.begin(), weight.end(), 0.0);
   begin_.push_back(0);
   double before = 0;
@@ -116,6 +138,42 @@ void SharedResults::exchange(const RankError& error) {
   all.gather({room(), begin_.back()}, begin_);
   for (int r = 0; r < all.ranks(); ++r)
     if (failed(r) != std::byte(0)) error.raise(r);
+}
+
+namespace {
+
+constexpr std::size_t largest_parcel = 1U << 29U;
+
+/// swap(begin, end) for the parts of so many bytes that are sent at once.
+template <class Swap>
+void in_parcels(std::size_t bytes, const Swap& swap) {
+  for (std::size_t begin = 0; begin < bytes; begin += largest_parcel)
+    swap(begin, std::min(bytes, begin + largest_parcel) - begin);
+}
+
+}  // namespace
+
+void send_to_first(std::span<const std::byte> bytes) {
+  const auto send = [](std::span<const std::byte> part) {
+    const Parcel parcel{.out = part};
+    communicator().swap({&parcel, 1});
+  };
+  const std::size_t size = bytes.size();
+  send(std::as_bytes(std::span(&size, 1)));
+  in_parcels(size, [&](std::size_t begin, std::size_t count) { send(bytes.subspan(begin, count)); });
+}
+
+std::vector<std::byte> receive_from(int rank) {
+  const auto receive = [rank](std::span<std::byte> part) {
+    const Parcel parcel{.rank = rank, .in = part};
+    communicator().swap({&parcel, 1});
+  };
+  std::size_t size = 0;
+  receive(std::as_writable_bytes(std::span(&size, 1)));
+  std::vector<std::byte> bytes(size);
+  in_parcels(size,
+             [&](std::size_t begin, std::size_t count) { receive(std::span(bytes).subspan(begin, count)); });
+  return bytes;
 }
 
 }  // namespace detail

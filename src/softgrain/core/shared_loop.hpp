@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstring>
 #include <exception>
+#include <limits>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -14,7 +15,8 @@
 namespace softgrain {
 
 /// Which rank works on which of a run's units (grains, or batches of them): each on units that lie one after
-/// the other, of about the same weight in all. Without ranks, all on all.
+/// the other, of about the same weight in all. Without ranks, all on all. For tests the environment variable
+/// SOFTGRAIN_PARTITION, a number from 1 on, gives them parts of random sizes instead.
 class Shares {
  public:
   Shares() = default;
@@ -25,6 +27,20 @@ class Shares {
   bool mine(int unit) const {
     const auto r = static_cast<std::size_t>(communicator().rank());
     return alone() || (begin_[r] <= unit && unit < begin_[r + 1]);
+  }
+  /// This rank's units begin .. end - 1.
+  struct Range {
+    int begin = 0, end = std::numeric_limits<int>::max();
+  };
+  Range own() const {
+    const auto r = static_cast<std::size_t>(communicator().rank());
+    return alone() ? Range{} : Range{begin_[r], begin_[r + 1]};
+  }
+  /// That has the unit.
+  int rank_of(int unit) const {
+    return alone()
+               ? 0
+               : static_cast<int>(std::upper_bound(begin_.begin(), begin_.end(), unit) - begin_.begin()) - 1;
   }
   /// (ranks + 1) the first of the items 0 .. count - 1 of each rank, where unit_of(item) does not decrease.
   template <class UnitOf>
@@ -68,14 +84,19 @@ class Message {
   requires is_plain<T>
   void operator()(T& value) { move(&value, sizeof value); }
   /// values[i] for each of these indices.
-  template <class T, class Index>
-  void at(std::span<const Index> indices, std::vector<T>& values) {
+  template <class T>
+  void at(std::span<const int> indices, std::span<T> values) {
     static_assert(is_plain<T>);
     if (place_ == nullptr) {
       bytes_ += indices.size() * sizeof(T);
       return;
     }
-    for (const Index i : indices) move(&values[i], sizeof(T));
+    std::byte* place = place_ + bytes_;
+    bytes_ += indices.size() * sizeof(T);
+    if (sends_)
+      for (const int i : indices) std::memcpy(place, &values[i], sizeof(T)), place += sizeof(T);
+    else
+      for (const int i : indices) std::memcpy(&values[i], place, sizeof(T)), place += sizeof(T);
   }
   /// A list whose length only its own rank knows: only in loops with Lengths::told.
   template <class T>
@@ -98,6 +119,15 @@ class Message {
   bool sends_ = false;
   std::size_t bytes_ = 0;
 };
+
+/// value of the first rank, on all of them.
+template <class T>
+void tell_all(T& value) {
+  static_assert(is_plain<T>);
+  std::vector<std::size_t> begin(communicator().ranks() + 1, sizeof value);
+  begin.front() = 0;
+  communicator().gather(std::as_writable_bytes(std::span(&value, 1)), begin);
+}
 
 /// Do all ranks know how long the results of all items are, or must they be told?
 enum class Lengths { known, told };
@@ -141,6 +171,9 @@ class SharedResults {
   std::vector<std::size_t> begin_;
 };
 
+void send_to_first(std::span<const std::byte> bytes);
+std::vector<std::byte> receive_from(int rank);
+
 }  // namespace detail
 
 /// parallel_for over items 0 .. count - 1, each on the rank that has its unit; then all ranks have the
@@ -183,12 +216,36 @@ void shared_for(const Shares& shares, int count, const Work& work, const Result&
       shares, count, [](int i) { return i; }, work, result, lengths);
 }
 
+/// The first rank gets what result(i, message) names of the items 0 .. count - 1 of the others, which get
+/// nothing: for what it writes. It holds the messages of one rank at a time.
+template <class UnitOf, class Result>
+void collect(const Shares& shares, int count, const UnitOf& unit_of, const Result& result) {
+  if (shares.alone()) return;
+  const std::vector<int> first = shares.first_items(count, unit_of);
+  const auto pass = [&](int rank, Message message) {
+    for (int i = first[rank]; i < first[rank + 1]; ++i) result(i, message);
+    return message.bytes();
+  };
+  const int me = communicator().rank();
+  if (me > 0) {
+    std::vector<std::byte> bytes(pass(me, {}));
+    pass(me, {bytes.data(), true});
+    return detail::send_to_first(bytes);
+  }
+  for (int r = 1; r < communicator().ranks(); ++r) {
+    std::vector<std::byte> bytes = detail::receive_from(r);
+    pass(r, {bytes.data(), false});
+  }
+}
+
 /// work(i) for those of the units 0 .. count - 1 that are this rank's; the others know nothing of it.
 template <class Work>
 void own_for(const Shares& shares, int count, const Work& work) {
-  parallel_for(count, [&](int i) {
-    if (shares.mine(i)) work(i);
-  });
+  if (shares.alone()) return parallel_for(count, work);
+  const double begin = process_seconds();
+  const auto [first, end] = shares.own();
+  parallel_for(std::min(end, count) - first, [&, first = first](int k) { work(first + k); });
+  communicator().account.cpu_shared += process_seconds() - begin;
 }
 
 }  // namespace softgrain

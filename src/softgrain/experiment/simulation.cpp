@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/core/shared_loop.hpp"
 #include "softgrain/experiment/scene_of_box.hpp"
 #include "softgrain/model/scene_in_cell.hpp"
 #include "softgrain/observe/stress.hpp"
@@ -81,8 +82,11 @@ StepFelt SimulationOf<Dim>::felt_in(const StepReport& report) {
   StepFelt felt{.overlap_mean = report.overlap_mean, .unrest = 0};
   if (!loading_.asks_for_rest()) return felt;
   gather();
-  const Energies energies = this->energies();
-  felt.unrest = energies.kinetic / std::abs(energies.stored);
+  if (communicator().rank() == 0) {
+    const Energies energies = this->energies();
+    felt.unrest = energies.kinetic / std::abs(energies.stored);
+  }
+  tell_all(felt.unrest);
   return felt;
 }
 

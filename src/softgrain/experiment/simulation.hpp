@@ -47,7 +47,7 @@ class AnySimulation {
   /// be had.
   virtual SolvedContactProblem step_and_catch_problem() = 0;
 
-  /// On several ranks, on all at once, before one asks for what follows (ModelOf::gather).
+  /// On several ranks, on all at once, before the first one asks for what follows (ModelOf::gather).
   virtual void gather() {}
   /// What a row of series.csv says now (observe/columns.hpp). Wall forces and iterations are means over the
   /// steps since `begin_row`.

@@ -96,8 +96,9 @@ class ModelOf {
   /// One step of dt [s]; the walls of the box move by dt times their velocity and get the impulses that they
   /// felt. Raises NumericalError where the state is not finite or no solution is found.
   virtual StepReport step(Box<Dim>& box, double dt) = 0;
-  /// On several ranks, on all at once: each gets what a step left with the rank of a grain alone, before one
-  /// looks at more than centres, extent and contacts between grains.
+  /// On several ranks, on all at once: the first one gets what a step left with the rank of a grain alone.
+  /// Before that nobody, and after it the first one alone, may look at more than contacts between grains (and
+  /// in a periodic cell at centres, in an open box at the extent).
   virtual void gather() {}
   /// After a step: true if no smaller box holds the grains. Raises NumericalError where its overlaps show
   /// that the step has no solution.

@@ -49,11 +49,6 @@ struct ListedBlock {
   Sequence frictionless, frictional, pressed, crossing;
 };
 
-void pass(ListedBlock& listed, Message& message) {
-  for (Sequence* sequence : {&listed.frictionless, &listed.frictional, &listed.pressed, &listed.crossing})
-    message.list(sequence->pairs), message(sequence->in_fours);
-}
-
 /// Pairs among the particles of `range`, and walls n, n + 1, ...
 template <int Dim>
 ListedBlock listed(std::vector<BodyPair> pairs, const FrictionRule& rule, const GrainRange& range,
@@ -118,19 +113,13 @@ void copy(const RigidContacts<Dim>& old, const ContactBlock& from, int to, Rigid
   copy_rows(&Contacts::impulse);
 }
 
-/// The block of a list whose contacts start at `begin`.
-ContactBlock at(int begin, ContactBlock block) {
-  const int shift = begin - block.begin();
-  for (ContactBatch* batch : {&block.frictionless, &block.frictional, &block.pressed, &block.crossing})
-    batch->begin += shift, batch->fours_end += shift, batch->end += shift;
-  return block;
-}
-ContactBlock at(int begin, const ListedBlock& listed) {
+/// The block of a list, whose contacts start at 0.
+ContactBlock block_of(const ListedBlock& listed) {
   const auto batch_of = [](const Sequence& sequence, int first) {
     return ContactBatch{first, first + sequence.in_fours, first + static_cast<int>(sequence.pairs.size())};
   };
   ContactBlock block;
-  block.frictionless = batch_of(listed.frictionless, begin);
+  block.frictionless = batch_of(listed.frictionless, 0);
   block.frictional = batch_of(listed.frictional, block.frictionless.end);
   block.pressed = batch_of(listed.pressed, block.frictional.end);
   block.crossing = batch_of(listed.crossing, block.pressed.end);
@@ -188,31 +177,38 @@ RigidContacts<Dim> candidate_contacts(const RigidParticles<Dim>& particles,
     return before[list] != nullptr && before[list]->made == reference.made[list];
   };
   std::vector<ListedBlock> made(grains + 1);
+  contacts.blocks.assign(grains + 1, {});
   const auto make = [&](int list) {
-    if (!is_kept(list)) made[list] = make_list(particles, reference, friction, list);
+    ContactBlock& block = contacts.blocks[list];
+    if (is_kept(list)) {
+      block = *before[list];
+      return;
+    }
+    made[list] = make_list(particles, reference, friction, list);
+    block = block_of(made[list]);
+    block.any = block.end() > block.begin();
+    block.rough = block.frictional.end > block.frictional.begin;
   };
   make(grains);  // on all threads by itself
-  shared_for(
-      reference.shares, grains, make,
-      [&](int list, Message& message) {
-        if (!is_kept(list)) pass(made[list], message);
-      },
-      Lengths::told);
-
-  contacts.blocks.clear();
+  shared_for(reference.shares, grains, make, [&](int list, Message& message) {
+    message(contacts.blocks[list].any), message(contacts.blocks[list].rough);
+  });
   int size = 0;
   for (int list = 0; list <= grains; ++list) {
-    ContactBlock block = is_kept(list) ? at(size, *before[list]) : at(size, made[list]);
+    ContactBlock& block = contacts.blocks[list];
+    block.move_to(size);
     block.list = list;
     block.made = reference.made[list];
     size = block.end();
-    if (block.end() > block.begin() || list == grains) contacts.blocks.push_back(block);
   }
+  if (reference.shares.alone())
+    std::erase_if(contacts.blocks, [&](const auto& block) { return !block.any && block.list != grains; });
   contacts.resize(size);
   contacts.cell = particles.cell;
   contacts.image = is_kept(grains) ? old.image : images_of<Dim>(made[grains].crossing);
   parallel_for(static_cast<int>(contacts.blocks.size()), [&](int k) {
     const ContactBlock& block = contacts.blocks[k];
+    if (block.end() == block.begin()) return;  // another rank may have some
     if (is_kept(block.list)) return copy(old, *before[block.list], block.begin(), contacts);
     write(made[block.list].frictionless, particles, friction, block.frictionless, contacts);
     write(made[block.list].frictional, particles, friction, block.frictional, contacts);

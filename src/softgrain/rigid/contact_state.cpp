@@ -18,7 +18,8 @@ std::pair<std::int64_t, std::int64_t> pair_of(const RigidContacts<Dim>& contacts
 }  // namespace
 
 template <int Dim>
-void visit_impulses(RigidContacts<Dim>& contacts, StateVisitor& visit) {
+void visit_impulses(RigidContacts<Dim>& contacts, StateVisitor& visit,
+                    const std::function<bool(std::int64_t, std::int64_t)>& is_mine) {
   std::vector<std::int64_t> pairs;
   std::vector<Vec<Dim>> impulse;
   for (int c = 0; c < contacts.size(); ++c) {
@@ -39,6 +40,7 @@ void visit_impulses(RigidContacts<Dim>& contacts, StateVisitor& visit) {
   std::fill(contacts.impulse.begin(), contacts.impulse.end(), Vec<Dim>{});
   for (std::size_t k = 0; k < impulse.size(); ++k) {
     const std::pair wanted(pairs[2 * k], pairs[2 * k + 1]);
+    if (!is_mine(wanted.first, wanted.second)) continue;
     const auto found = std::lower_bound(sorted.begin(), sorted.end(), wanted,
                                         [&](int c, const auto& pair) { return by_pair(c) < pair; });
     if (found == sorted.end() || by_pair(*found) != wanted)
@@ -49,7 +51,9 @@ void visit_impulses(RigidContacts<Dim>& contacts, StateVisitor& visit) {
   }
 }
 
-template void visit_impulses<2>(RigidContacts<2>&, StateVisitor&);
-template void visit_impulses<3>(RigidContacts<3>&, StateVisitor&);
+template void visit_impulses<2>(RigidContacts<2>&, StateVisitor&,
+                                const std::function<bool(std::int64_t, std::int64_t)>&);
+template void visit_impulses<3>(RigidContacts<3>&, StateVisitor&,
+                                const std::function<bool(std::int64_t, std::int64_t)>&);
 
 }  // namespace softgrain

@@ -20,10 +20,17 @@ struct ContactBlock {
   ContactBatch crossing;  ///< then those with images across the edge of a periodic cell, which do so too
   int list = 0;           ///< of NeighbourReference that it was made from
   int made = 0;           ///< when, as NeighbourReference::made
+  /// Has it contacts, and with friction? Of a grain of another rank this alone is known.
+  bool any = false, rough = false;
 
   int begin() const { return frictionless.begin; }
   int end() const { return std::max({frictional.end, pressed.end, crossing.end}); }
-  bool has_friction() const { return frictional.end > frictional.begin; }
+  /// The same, where its contacts start at `begin`.
+  void move_to(int begin) {
+    const int shift = begin - frictionless.begin;
+    for (ContactBatch* batch : {&frictionless, &frictional, &pressed, &crossing})
+      batch->begin += shift, batch->fours_end += shift, batch->end += shift;
+  }
 };
 
 /// Candidate contacts, in the order of the sweep: all pairs that could touch before the next rebuild. Open
@@ -41,8 +48,10 @@ struct RigidContacts {
   std::vector<Vec<Dim>> normal;          ///< (m) unit, from a to b
   std::vector<double> gap;               ///< (m) [m], open > 0
   std::vector<Vec<Dim>> impulse;         ///< (m) (p_n, p_t) [N s/m in 2D]
-  std::vector<ContactBlock> blocks;      ///< those inside grains share no particle; the last is between them
-  PeriodicCell<Dim> cell;                ///< where gaps were measured
+  /// Those inside grains, which share no particle: of each grain that has any, with ranks of each grain. Then
+  /// the one between them
+  std::vector<ContactBlock> blocks;
+  PeriodicCell<Dim> cell;                                ///< where gaps were measured
   std::vector<typename PeriodicCell<Dim>::Image> image;  ///< of body b of the last contacts, which cross it
 
   int size() const { return static_cast<int>(body_a.size()); }

@@ -16,7 +16,8 @@ void NarrowSweepsOf<Dim>::take_bodies(const RigidParticles<Dim>& particles,
   listed_.clear();
   for (const ContactBlock& block : contacts.blocks) {
     listed_.push_back(block.list);
-    blocks_[block.list].spins = block.has_friction();
+    blocks_[block.list].spins = block.rough;
+    blocks_[block.list].any = block.any;
   }
   velocity_.resize(bodies_ + blocks_.size());
   spin_.resize(bodies_ + blocks_.size());
@@ -35,19 +36,21 @@ void NarrowSweepsOf<Dim>::take_bodies(const RigidParticles<Dim>& particles,
       take_touched(contacts, contacts.blocks.back());
       between.touched_made = contacts.blocks.back().made;
     }
-  parallel_ranges(bodies_, [&](int begin, int end) {
+  const auto take = [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       for (int k = 0; k < Dim; ++k) velocity_[i].c[k] = static_cast<float>(particles.velocity[i][k]);
       for (int k = 0; k < spin_size<Dim>; ++k) spin_[i].c[k] = static_cast<float>(particles.spin[i][k]);
     }
-  });
+  };
+  particles.followed.for_each_range(particles.size(), take);
+  take(particles.size(), bodies_);
 }
 
 /// The bodies of a grain that have contacts inside it.
 template <int Dim>
 void NarrowSweepsOf<Dim>::take_range(const RigidContacts<Dim>& contacts, const ContactBlock& listed,
                                      Block& block) {
-  block.bodies = {bodies_, 0};
+  block.bodies = {listed.end() > listed.begin() ? bodies_ : 0, 0};
   for (int c = listed.begin(); c < listed.end(); ++c) {
     block.bodies.begin = std::min(block.bodies.begin, contacts.body_a[c]);
     block.bodies.end = std::max(block.bodies.end, contacts.body_b[c] + 1);

@@ -74,12 +74,9 @@ SolverReport RigidDynamics<Dim>::solve_in_single_precision(RigidContactSystem<Di
         overlaps_[k] = overlaps_of(contacts.blocks[k]);
       },
       [&](int k, Message& message) {
-        const GrainRange& grain = reference.grains[contacts.blocks[k].list];
-        const auto of_grain = [&](auto& rows) {
-          message(std::span(rows).subspan(grain.begin, grain.end - grain.begin));
-        };
-        of_grain(particles.velocity);
-        of_grain(particles.spin);  // n x (p n) is round-off, not 0
+        const std::span<const int> touched = narrow_.touched(contacts.blocks[k].list);
+        message.at(touched, std::span(particles.velocity));
+        message.at(touched, std::span(particles.spin));  // n x (p n) is round-off, not 0
         message(overlaps_[k]);
       });
   move_presses(dt);

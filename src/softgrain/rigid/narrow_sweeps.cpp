@@ -114,10 +114,8 @@ Violation NarrowSweepsOf<Dim>::sweep_block(int k, double ahead, bool measured) {
 /// What contacts between grains see of a grain.
 template <int Dim>
 void NarrowSweepsOf<Dim>::pass_touched(const Block& block, Message& message) {
-  const auto bodies = std::span<const int>(touched_bodies_)
-                          .subspan(block.touched.begin, block.touched.end - block.touched.begin);
-  message.at(bodies, velocity_);
-  if (block.spins) message.at(bodies, spin_);
+  message.at(touched(block), std::span(velocity_));
+  if (block.spins) message.at(touched(block), std::span(spin_));
 }
 
 template <int Dim>
@@ -164,6 +162,7 @@ void NarrowSweepsOf<Dim>::end_sweep() {
   for (const int list : listed_) blocks_[list].moved = 0;
   for (Touched& touched : touched_) {
     Block& block = blocks_[touched.list];
+    if (!block.any) continue;
     const Velocity& v = velocity_[touched.body];
     if (block.turn == sweeps_) {
       touched.velocity = v;

@@ -51,6 +51,8 @@ class NarrowSweepsOf {
   Violation sweep_between(bool measured);
   void end_sweep();
   double moved(int block) const { return blocks_[listed_[block]].moved; }
+  /// The bodies of a grain that have contacts between grains.
+  std::span<const int> touched(int grain) const { return touched(blocks_[grain]); }
 
   /// As a ContactSystem, for the contacts that no block sweeps (ContactBlock::pressed, crossing): u under all
   /// impulses so far, with `offset` as in start, and what an impulse does.
@@ -94,6 +96,7 @@ class NarrowSweepsOf {
     Batch<Eight> frictionless;
     Batch<FrictionalEight> frictional;
     GrainRange bodies{};  // of a grain
+    bool any = false;     // has it contacts?
     bool spins = false;   // has it friction?
     int touched_made = -1;
     GrainRange touched{};  // its bodies with contacts between grains, in touched_
@@ -129,6 +132,10 @@ class NarrowSweepsOf {
   static void load_tangents(FrictionalEight& contact);
   void take_range(const RigidContacts<Dim>& contacts, const ContactBlock& listed, Block& block);
   void take_touched(const RigidContacts<Dim>& contacts, const ContactBlock& between);
+  std::span<const int> touched(const Block& block) const {
+    const auto [begin, end] = block.touched;
+    return std::span<const int>(touched_bodies_).subspan(begin, end - begin);
+  }
   void pass_touched(const Block& block, Message& message);
   Violation sweep_block(int block, double ahead, bool measured);
   template <bool Ahead, bool Measured>
@@ -139,7 +146,7 @@ class NarrowSweepsOf {
   Violation sweep_contacts(Block& block, float b);
 
   std::vector<Block> blocks_;       // by ContactBlock::list
-  std::vector<int> listed_;         // those that have contacts, in the order of the sweep
+  std::vector<int> listed_;         // in the order of the sweep
   std::vector<Velocity> velocity_;  // of the bodies, then of one at rest for each block
   std::vector<Turn> spin_;
   std::vector<Velocity> start_, end_;  // of the bodies of grains in the last turn of their block

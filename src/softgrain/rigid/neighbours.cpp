@@ -198,7 +198,8 @@ void detect_four(const RigidParticles<2>& particles, int c, RigidContacts<2>& co
 }  // namespace
 
 template <int Dim>
-bool renew_stale_lists(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles) {
+bool renew_stale_lists(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles,
+                       const std::function<void()>& know_all) {
   if (reference.position.size() != particles.position.size()) {
     set_reference(reference, particles);
     return true;
@@ -210,9 +211,11 @@ bool renew_stale_lists(NeighbourReference<Dim>& reference, const RigidParticles<
     if (stale[list] <= renewed_share) continue;
     reference.made[list] = reference.generation;
     if (list == reference.between_list()) {
+      if (know_all) know_all();
       take_between(reference, particles);
       continue;
     }
+    if (!reference.shares.mine(list)) continue;
     const auto [begin, end] = reference.grains[list];
     std::copy(particles.position.begin() + begin, particles.position.begin() + end,
               reference.position.begin() + begin);
@@ -261,11 +264,13 @@ void detect_contacts(const RigidParticles<Dim>& particles, int begin, int end, R
   for (; c < end; ++c) detect_contact(particles, c, contacts);
 }
 
-template bool renew_stale_lists<2>(NeighbourReference<2>&, const RigidParticles<2>&);
+template bool renew_stale_lists<2>(NeighbourReference<2>&, const RigidParticles<2>&,
+                                   const std::function<void()>&);
 template void set_reference<2>(NeighbourReference<2>&, const RigidParticles<2>&);
 template void restore_reference<2>(NeighbourReference<2>&, const RigidParticles<2>&, std::vector<Vec<2>>,
                                    std::vector<Vec<2>>, std::vector<Vec<2>>, const PeriodicCell<2>&);
-template bool renew_stale_lists<3>(NeighbourReference<3>&, const RigidParticles<3>&);
+template bool renew_stale_lists<3>(NeighbourReference<3>&, const RigidParticles<3>&,
+                                   const std::function<void()>&);
 template void set_reference<3>(NeighbourReference<3>&, const RigidParticles<3>&);
 template void restore_reference<3>(NeighbourReference<3>&, const RigidParticles<3>&, std::vector<Vec<3>>,
                                    std::vector<Vec<3>>, std::vector<Vec<3>>, const PeriodicCell<3>&);

@@ -49,12 +49,14 @@ struct NeighbourReference {
 };
 
 /// Takes the present positions as reference of the lists that might miss a pair, and of those more than half
-/// way there. False if no list might miss one. Grains that move as a whole stay where they are for their own
-/// particles: with D the mean displacement of a grain since a reference and d the largest of a particle
-/// about it, two particles of one grain have approached by at most 2 d, those of two by d + d' + |D - D'|,
-/// which may reach 90 % of the skin.
+/// way there: with ranks of the lists inside their own grains; before that of the list between grains is
+/// taken, know_all() makes all positions known on all ranks. False if no list might miss one. Grains that
+/// move as a whole stay where they are for their own particles: with D the mean displacement of a grain since
+/// a reference and d the largest of a particle about it, two particles of one grain have approached by at
+/// most 2 d, those of two by d + d' + |D - D'|, which may reach 90 % of the skin.
 template <int Dim>
-bool renew_stale_lists(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles);
+bool renew_stale_lists(NeighbourReference<Dim>& reference, const RigidParticles<Dim>& particles,
+                       const std::function<void()>& know_all = {});
 
 /// Takes the present positions as reference of all lists.
 template <int Dim>
@@ -66,10 +68,11 @@ void restore_reference(NeighbourReference<Dim>& reference, const RigidParticles<
                        std::vector<Vec<Dim>> position, std::vector<Vec<Dim>> between,
                        std::vector<Vec<Dim>> wall_point, const PeriodicCell<Dim>& cell);
 
-/// All candidate contacts with gap < skin at the reference: a block for the inside of each grain that has
-/// any, then the block of those between grains and with walls. Blocks of `old`, made from this reference, are
-/// taken over where their list has not been made again; else impulses are carried over by (a, b). The order
-/// depends on the reference alone. The memory of `room` is used again.
+/// All candidate contacts with gap < skin at the reference, but for those inside grains of other ranks:
+/// blocks for the insides of grains (RigidContacts::blocks), then the block of those between grains and with
+/// walls. Blocks of `old`, made from this reference, are taken over where their list has not been made again;
+/// else impulses are carried over by (a, b). The order depends on the reference alone. The memory of `room`
+/// is used again.
 template <int Dim>
 RigidContacts<Dim> candidate_contacts(const RigidParticles<Dim>& particles,
                                       const NeighbourReference<Dim>& reference, const FrictionRule& friction,

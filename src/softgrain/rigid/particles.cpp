@@ -33,7 +33,7 @@ RigidParticles<Dim> rigid_particles(std::vector<Vec<Dim>> position, std::vector<
 
 template <int Dim>
 void drift(RigidParticles<Dim>& particles, double dt) {
-  parallel_ranges(particles.size(), [&](int begin, int end) {
+  particles.followed.for_each_range(particles.size(), [&](int begin, int end) {
     for (int i = begin; i < end; ++i) particles.position[i] += dt * particles.velocity[i];
   });
   for (Wall<Dim>& wall : particles.walls) wall.point += dt * wall.velocity;

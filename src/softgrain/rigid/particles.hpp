@@ -1,7 +1,10 @@
 #pragma once
+#include <algorithm>
 #include <cassert>
+#include <limits>
 #include <vector>
 
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/periodic_cell.hpp"
 #include "softgrain/geometry/press.hpp"
 #include "softgrain/geometry/wall.hpp"
@@ -15,6 +18,20 @@ inline constexpr int spin_size = Dim == 2 ? 1 : 3;
 
 template <int Dim>
 using Spin = Vec<spin_size<Dim>>;
+
+/// The particles whose motion this process follows: all, or with ranks those of its grains, begin .. end - 1,
+/// and others that may touch other grains or walls.
+struct Followed {
+  int begin = 0, end = std::numeric_limits<int>::max();
+  std::vector<int> others{};
+
+  /// work(begin, end) for ranges that make them up, of n particles.
+  template <class Work>
+  void for_each_range(int n, const Work& work) const {
+    parallel_ranges(std::min(end, n) - begin, [&](int b, int e) { work(begin + b, begin + e); });
+    for (const int i : others) work(i, i + 1);
+  }
+};
 
 /// Rigid disks (Dim = 2, per metre of depth) or spheres (Dim = 3), then the walls, in one array of bodies.
 ///
@@ -34,6 +51,7 @@ struct RigidParticles {
   std::vector<Wall<Dim>> walls;
   std::vector<Press> presses;  ///< that move some of the walls
   PeriodicCell<Dim> cell;      ///< that repeats them
+  Followed followed;           ///< positions, velocities and spins of others are those of an earlier step
 
   int size() const { return static_cast<int>(position.size()); }
   int wall_body(int wall) const { return size() + wall; }
@@ -46,7 +64,7 @@ template <int Dim>
 RigidParticles<Dim> rigid_particles(std::vector<Vec<Dim>> position, std::vector<double> radius,
                                     std::vector<double> mass, std::vector<Wall<Dim>> walls);
 
-/// x += dt v, for particles, walls and the cell.
+/// x += dt v, for the particles that are followed, walls and the cell.
 template <int Dim>
 void drift(RigidParticles<Dim>& particles, double dt);
 

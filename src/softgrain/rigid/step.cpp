@@ -8,6 +8,7 @@
 #include "softgrain/contact/nlgs.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
+#include "softgrain/core/shared_sum.hpp"
 #include "softgrain/rigid/contact_blocks.hpp"
 
 namespace softgrain {
@@ -34,10 +35,11 @@ RigidDynamics<Dim>::RigidDynamics(RigidParticles<Dim> bodies, FrictionRule frict
 
 template <int Dim>
 StepReport RigidDynamics<Dim>::step(const ForceField<Dim>& field, double dt) {
+  take_own_contacts();
   list_pressed_walls();
   for (const Press& press : particles.presses) set_press_speed(particles, press, press.speed);
   drift(particles, dt / 2);  // x_m = x + dt/2 v
-  if (renew_stale_lists(reference, particles)) rebuild_contacts();
+  if (renew_stale_lists(reference, particles, [&] { know_all(); })) rebuild_contacts();
   kick(field, dt);  // v_free = v + dt M^-1 F(x_m)
   // gaps and frames at x_m
   const SolverReport solver = solve(dt);  // v+ = v_free + M^-1 H p,  0 <= u_n + q_n _|_ p_n >= 0
@@ -51,29 +53,11 @@ StepReport RigidDynamics<Dim>::step(const ForceField<Dim>& field, double dt) {
 
 template <int Dim>
 void RigidDynamics<Dim>::rebuild_contacts() {
+  take_own_contacts();
   RigidContacts<Dim> made =
       candidate_contacts(particles, reference, friction_, contacts, std::move(replaced_));
   replaced_ = std::exchange(contacts, std::move(made));
-}
-
-template <int Dim>
-void RigidDynamics<Dim>::share_grains() {
-  reference.shared =
-      options.precision == Precision::single && options.law.activation == Activation::anticipated;
-}
-
-template <int Dim>
-void RigidDynamics<Dim>::gather() {
-  const auto rows_of = [](const ContactBlock& block, auto& rows) {
-    return std::span(rows).subspan(block.begin(), block.end() - block.begin());
-  };
-  for_each_block(
-      contacts, reference.shares, [](int) {},
-      [&](int k, Message& message) {
-        message(rows_of(contacts.blocks[k], contacts.gap));
-        message(rows_of(contacts.blocks[k], contacts.normal));
-        message(rows_of(contacts.blocks[k], contacts.impulse));
-      });
+  if (!reference.shares.alone()) follow_others();
 }
 
 /// Contacts with and without friction are listed apart, so that the list is made again.
@@ -154,17 +138,22 @@ void RigidDynamics<Dim>::kick(const ForceField<Dim>& field, double dt) {
   force_.resize(particles.velocity.size());
   velocity_start_.resize(particles.velocity.size());
   spin_start_.resize(particles.spin.size());
-  parallel_ranges(static_cast<int>(force_.size()), [&](int begin, int end) {
+  const Followed& followed = particles.followed;
+  followed.for_each_range(particles.size(), [&](int begin, int end) {
     std::fill(force_.begin() + begin, force_.begin() + end, Vec<Dim>{});
   });
+  std::fill(force_.begin() + particles.size(), force_.end(), Vec<Dim>{});  // of walls
   field(particles, force_);
-  parallel_ranges(static_cast<int>(particles.velocity.size()), [&](int begin, int end) {
+  const auto keep = [&](int begin, int end) {
     std::copy(particles.velocity.begin() + begin, particles.velocity.begin() + end,
               velocity_start_.begin() + begin);
     std::copy(particles.spin.begin() + begin, particles.spin.begin() + end, spin_start_.begin() + begin);
-    for (int i = begin; i < std::min(end, particles.size()); ++i)
-      particles.velocity[i] += dt * particles.inverse_mass[i] * force_[i];
+  };
+  followed.for_each_range(particles.size(), [&](int begin, int end) {
+    keep(begin, end);
+    for (int i = begin; i < end; ++i) particles.velocity[i] += dt * particles.inverse_mass[i] * force_[i];
   });
+  keep(particles.size(), static_cast<int>(particles.velocity.size()));
 }
 
 /// Gaps, frames, offsets and warm start of the contacts begin .. end - 1.
@@ -199,14 +188,22 @@ SolverReport RigidDynamics<Dim>::solve(double dt) {
   return report;
 }
 
+/// (grains + 1) of each grain.
+template <int Dim>
+std::vector<int> RigidDynamics<Dim>::first_particles() const {
+  std::vector<int> first;
+  for (const GrainRange& grain : reference.grains) first.push_back(grain.begin);
+  first.push_back(particles.size());
+  return first;
+}
+
 /// With v_m = (v + v+)/2, also of a wall: m/2 (v+^2 - v^2) = v_m . (dt F + H p); a wall's share is p against
 /// its own velocity.
 template <int Dim>
 void RigidDynamics<Dim>::account_work(double dt) {
   const auto middle = [&](int body) { return 0.5 * (velocity_start_[body] + particles.velocity[body]); };
   // by the forces, and by all
-  const auto sum = parallel_sum<Vec<2>>(particles.size(), [&](int begin, int end) {
-    Vec<2> part;
+  const auto add = [&](int begin, int end, Vec<2> part) {
     for (int i = begin; i < end; ++i) {
       const Spin<Dim> spin_middle = 0.5 * (spin_start_[i] + particles.spin[i]);
       part[0] += dt * dot(force_[i], middle(i));
@@ -215,7 +212,8 @@ void RigidDynamics<Dim>::account_work(double dt) {
                   dot(spin_middle, particles.spin[i] - spin_start_[i]) / particles.inertia_ratio);
     }
     return part;
-  });
+  };
+  const auto sum = shared_sum<Vec<2>>(reference.shares, first_particles(), add);
   if (!std::isfinite(sum[1])) throw_not_finite();
   work = {.force = sum[0]};
   add_up_wall_impulses();
@@ -269,14 +267,25 @@ void RigidDynamics<Dim>::account_contacts() {
   }
 }
 
+/// Names the first particle that is not finite, whichever rank has it.
 template <int Dim>
 void RigidDynamics<Dim>::throw_not_finite() const {
   const auto broken = [](const auto& v) { return !std::isfinite(dot(v, v)); };
-  int first = 0;
-  while (first + 1 < particles.size() && !broken(particles.velocity[first]) && !broken(particles.spin[first]))
-    ++first;
+  const auto first_of = [&](int begin, int end) {
+    int i = begin;
+    while (i < end && !broken(particles.velocity[i]) && !broken(particles.spin[i])) ++i;
+    return i;
+  };
+  std::vector<int> first(reference.grains.size());
+  shared_for(
+      reference.shares, reference.between_list(),
+      [&](int g) { first[g] = first_of(reference.grains[g].begin, reference.grains[g].end); },
+      [&](int g, Message& message) { message(first[g]); });
+  int particle = particles.size() - 1;
+  for (int g = reference.between_list() - 1; g >= 0; --g)
+    if (first[g] < reference.grains[g].end) particle = first[g];
   throw NumericalError(
-      fmt::format("the velocity of particle {} is not finite; use a smaller time step", first));
+      fmt::format("the velocity of particle {} is not finite; use a smaller time step", particle));
 }
 
 template class RigidDynamics<2>;

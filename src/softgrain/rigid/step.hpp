@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -74,14 +75,22 @@ class RigidDynamics {
   /// Makes the contacts of renewed lists again from the reference as it is.
   void rebuild_contacts();
   /// Before the reference is set: ranks share the grains, where sweeps in single precision are all that looks
-  /// at the contacts inside them. Then whoever looks at those gathers them first.
+  /// at the contacts inside them. Each then has the contacts inside its own grains and those between grains,
+  /// and follows the particles of both (RigidParticles::followed).
   void share_grains();
-  /// Gaps, normals and impulses of contacts inside grains, from the ranks that have them (ModelOf::gather).
+  /// On all ranks: the first one then knows all particles and contacts, until the next step
+  /// (ModelOf::gather).
   void gather();
+  /// On all ranks: all then know positions, velocities and spins of all particles, until the next step.
+  void know_all();
   /// From now on, another one between grains or at walls; impulses stay.
   void set_friction(FrictionRule friction);
 
  private:
+  void follow_others();
+  void collect_contacts();
+  void take_own_contacts();
+  std::vector<int> first_particles() const;
   void kick(const ForceField<Dim>& field, double dt);
   void prepare(int begin, int end, double dt);
   void list_pressed_walls();
@@ -111,7 +120,8 @@ class RigidDynamics {
   std::vector<Vec<Dim>> wall_impulse_;            // (walls)
   std::vector<Vec<Dim>> velocity_kept_, pushes_;  // of push_out
   std::vector<double> frictionless_;
-  RigidContacts<Dim> replaced_;  // its memory serves the next list
+  RigidContacts<Dim> replaced_;                     // its memory serves the next list
+  std::optional<RigidContacts<Dim>> own_contacts_;  // while `contacts` are those of all ranks
   NarrowSweepsOf<Dim> narrow_;
   std::vector<Overlaps> overlaps_;  // of each block
   std::vector<bool> pressed_;       // (walls) those of presses when the list of contacts was made

@@ -18,15 +18,17 @@ constexpr int lanes = lane_count;
 
 ElasticContacts::ElasticContacts(const SoftGrains& grains, std::span<const OutlineContact> contacts,
                                  std::span<const OutlineCompliance> compliance,
-                                 std::span<const Vec<2>> increment, double dt, ElasticScratch& scratch)
+                                 std::span<const Vec<2>> increment, double dt, ElasticScratch& scratch,
+                                 bool shared)
     : dt_(dt), grain_(grains.size()), contact_(contacts.size()) {
   for (std::size_t b = 0; b < grains.batches.size(); ++b) {
     const GrainBatch& batch = grains.batches[b];
     const int nodes = batch.topology->grid.outline_nodes();
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) {
       grain_[batch.grain[lane]].nodes = nodes;
-      grain_[batch.grain[lane]].compliance =
-          compliance[b].data() + lane * static_cast<std::size_t>(4) * nodes * nodes;
+      if (!compliance[b].empty())
+        grain_[batch.grain[lane]].compliance =
+            compliance[b].data() + lane * static_cast<std::size_t>(4) * nodes * nodes;
     }
   }
   number_vertices(grains, contacts, increment);
@@ -44,7 +46,9 @@ ElasticContacts::ElasticContacts(const SoftGrains& grains, std::span<const Outli
   tangential_ = entries;
   levels_ = contact_levels(slave, master, grains.size(), least_group);
   violation_.resize(levels_.groups());
-  parallel_for(levels_.groups(), [&](int group) {
+  if (shared) share_groups();
+  if (!row_of_groups_.alone()) fetch_compliance(grains, scratch);
+  own_for(row_of_groups_.shares(), levels_.groups(), [&](int group) {
     for (int k = levels_.begin[group]; k < levels_.begin[group + 1]; ++k)
       set(contact_[levels_.contact[k]], contacts[levels_.contact[k]], grains);
   });
@@ -73,7 +77,7 @@ void ElasticContacts::number_vertices(const SoftGrains& grains, std::span<const 
 
 void ElasticContacts::set(Contact& contact, const OutlineContact& found, const SoftGrains& grains) const {
   const auto set_vertex = [&](std::size_t k, int grain, int vertex, double weight) {
-    contact.vertex[k] = vertex - grains.outline_begin(grain);
+    contact.vertex[k] = number_of(grain_[grain], local_[vertex]);
     contact.velocity[k] = grain_[grain].velocity + 2 * local_[vertex];
     contact.weight[k] = weight;
   };
@@ -123,7 +127,7 @@ void ElasticContacts::fill(const Contact& contact, int first, int grain, const V
     factor[k] = contact.weight[vertex] * direction[k % 2] / (dt_ * dt_);
   }
   for (int i = 0; i < g.count; ++i) {
-    const int at = 2 * vertex_[g.first + i];
+    const int at = 2 * number_of(g, i);
     double x = 0, y = 0;
     for (int k = 0; k < 2 * Vertices; ++k) {
       x += factor[k] * row[k][at];
@@ -171,9 +175,15 @@ void ElasticContacts::apply_impulse(int contact, const Vec<2>& dp) {
 /// Every second group on all threads, then the others.
 template <class Work>
 void ElasticContacts::for_each_in_order(const Work& work) {
-  parallel_alternate(levels_.groups(), [&](int group) {
-    for (int c = levels_.begin[group]; c < levels_.begin[group + 1]; ++c) work(levels_.contact[c], group);
-  });
+  row_of_groups_.alternate(
+      levels_.groups(),
+      [&](int group) {
+        for (int c = levels_.begin[group]; c < levels_.begin[group + 1]; ++c) work(levels_.contact[c], group);
+      },
+      [&](std::size_t seam, Message& message) {
+        for (const int g : at_seam_[seam])
+          message(std::span(velocity_).subspan(grain_[g].velocity, grain_[g].width));
+      });
 }
 
 void ElasticContacts::apply_impulses(std::span<const Vec<2>> impulse) {
@@ -189,6 +199,7 @@ Violation ElasticContacts::sweep(std::span<Vec<2>> impulse, std::span<const doub
     if (pushed_ && pushed_->has(c)) return;
     nlgs_update<2>(*this, c, impulse[c], friction[c], options.relaxation, violation_[group]);
   });
+  row_of_groups_.tell(levels_.groups(), [&](int group, Message& message) { message(violation_[group]); });
   Violation sum;
   for (const Violation& of_group : violation_) sum += of_group;
   if (pushed_) pushed_->sweep<2>(*this, impulse, friction, options.relaxation, sum);

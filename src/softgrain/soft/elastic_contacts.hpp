@@ -9,6 +9,7 @@
 #include "softgrain/contact/pushed_bodies.hpp"
 #include "softgrain/contact/residual.hpp"
 #include "softgrain/contact/solver_options.hpp"
+#include "softgrain/core/shared_row.hpp"
 #include "softgrain/soft/outline_contacts.hpp"
 
 namespace softgrain {
@@ -21,6 +22,7 @@ using OutlineCompliance = std::vector<double>;
 /// back to the system and asked for again in every Newton iteration.
 struct ElasticScratch {
   std::vector<float> columns;
+  std::vector<std::vector<double>> compliance;  ///< of vertices in contact, from each rank
 };
 
 /// Contacts of implicit grains as a ContactSystem (theory: W = H^T A^-1 H/dt^2, with A = M/dt^2 + K): the
@@ -31,10 +33,12 @@ struct ElasticScratch {
 class ElasticContacts {
  public:
   /// increment: (outline vertices) du without contact forces [m]. compliance: one for each batch of the
-  /// grains, and no longer needed than the system.
+  /// grains, and no longer needed than the system. With `shared` ranks share the groups of contacts: each has
+  /// the compliance of its own grains, and of rigid ones, and gets what its groups need of others. Nothing
+  /// but sweeps and apply_impulses may look at contacts then, and impulses stay with their rank until gather.
   ElasticContacts(const SoftGrains& grains, std::span<const OutlineContact> contacts,
                   std::span<const OutlineCompliance> compliance, std::span<const Vec<2>> increment, double dt,
-                  ElasticScratch& scratch);
+                  ElasticScratch& scratch, bool shared = false);
 
   int size() const { return static_cast<int>(contact_.size()); }
   const Mat<2>& delassus_block(int contact) const { return contact_[contact].delassus; }
@@ -58,17 +62,20 @@ class ElasticContacts {
   void extrapolate(double b);
   /// Sweeps then move these bodies too. Keeps a reference.
   void push(PushedBodies& bodies) { pushed_ = &bodies; }
+  /// On all ranks: these impulses, from the ranks that have them.
+  void gather(std::span<Vec<2>> impulse) const;
 
  private:
   /// A grain's vertices in contact: vertex_[first .. first + count - 1]. Their velocities are `width`
   /// numbers, filled up with zeros, from `velocity` on in velocity_.
   struct Condensed {
     int first = 0, count = 0, velocity = 0, width = 0;
-    int nodes = 0;                       ///< of the whole outline
-    const double* compliance = nullptr;  ///< of the whole outline
+    int nodes = 0;                       ///< that the compliance is of:
+    bool whole = true;                   ///< the whole outline, or the vertices in contact, from another rank
+    const double* compliance = nullptr;  ///< of these
   };
   struct Contact {
-    std::array<int, 7> vertex{};     ///< number along its outline: the slave's, then the master's four
+    std::array<int, 7> vertex{};     ///< numbers in their compliance: the slave's, then the master's four
     std::array<int, 7> velocity{};   ///< theirs in velocity_
     std::array<double, 7> weight{};  ///< 1, -w_k; of a place at a wall or on a rigid arc w_k
     int vertices = 0;
@@ -88,6 +95,14 @@ class ElasticContacts {
   void fill(const Contact& contact, int first, int grain, const Vec<2>& direction, float* column) const;
   template <class Work>
   void for_each_in_order(const Work& work);
+  template <class Visit>
+  void for_each_grain(int group, const Visit& visit) const;
+  void share_groups();
+  void fetch_compliance(const SoftGrains& grains, ElasticScratch& scratch);
+  /// Of a vertex in contact, in the grain's compliance.
+  int number_of(const Condensed& grain, int local) const {
+    return grain.whole ? vertex_[grain.first + local] : local;
+  }
 
   double dt_;
   std::vector<Condensed> grain_;
@@ -101,7 +116,9 @@ class ElasticContacts {
   float* columns_;
   std::size_t tangential_ = 0;
   ContactLevels levels_;
-  std::vector<Violation> violation_;  // (groups)
+  SharedRow row_of_groups_;
+  std::vector<std::vector<int>> at_seam_;  // grains that the groups of a seam share
+  std::vector<Violation> violation_;       // (groups)
   PushedBodies* pushed_ = nullptr;
 };
 

@@ -24,7 +24,7 @@ class ElasticGrains final : public ModelOf<Dynamics::dimension> {
   std::unique_ptr<ModelOf<Dim>> copy() const override { return std::make_unique<ElasticGrains>(*this); }
   StepReport step(Box<Dim>& box, double dt) override;
   void follow(const Mat<Dim>& L) override {
-    gather();
+    dynamics_.grains.know_all();
     dynamics_.work.walls += add_affine_velocity(dynamics_.grains, L);
   }
   void gather() override { dynamics_.grains.gather(); }

@@ -63,7 +63,7 @@ void ExplicitStep<Dim>::take_back_spin() {
     const std::vector<Wide> alone = grains_on_smooth_walls_alone(grains, contacts, friction_by_kind());
     if (std::none_of(alone.begin(), alone.end(), [](const Wide& of_batch) { return any(of_batch > 0.0); }))
       return;
-    grains.gather();  // it looks at whole grains
+    grains.know_all();  // it looks at whole grains
     grains.gather_outline(outline_.start);
     work.contacts -= turn_back(grains, alone, contacts, felt(), outline_.start);
   }

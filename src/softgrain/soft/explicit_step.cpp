@@ -80,7 +80,7 @@ SoftStepReport ExplicitStep<Dim>::step(double dt) {
     sub_step(rest / count, report);
     rest = count > 1 ? rest - rest / count : 0;
   }
-  if (box.cell.any()) grains.gather();  // the stress of a cell asks for centres of mass after each step
+  if (box.cell.any()) grains.know_all();  // the stress of a cell asks for centres of mass after each step
   return report;
 }
 
@@ -109,7 +109,9 @@ void ExplicitStep<Dim>::sub_step(double dt, SoftStepReport& report) {
   damping_ = {options.damping, dt, box};
   if constexpr (Dim == 2) take_back_spin();
   find_contacts(dt);
-  LumpedSystem<Dim> system(contacts, outline_, outline_velocity_, inverse_mass_, bodies_, lumped_scratch_);
+  const bool shared = box.presses.empty() && !adheres();  // their contacts take turns alone
+  LumpedSystem<Dim> system(contacts, outline_, outline_velocity_, inverse_mass_, bodies_, lumped_scratch_,
+                           shared);
   AdhesiveContacts adhesive;
   if constexpr (Dim == 2) {
     adhesive = adhesion_.contacts(grains, contacts, outline_, false, attraction);
@@ -124,6 +126,7 @@ void ExplicitStep<Dim>::sub_step(double dt, SoftStepReport& report) {
   solver.velocity_scale = mean_radius_ / dt;
   const SolverReport solved =
       solve_adhesive<Dim>(system, adhesive, pressed, std::span(impulse), friction, solver);
+  system.gather(impulse);
   impulse_time = dt;
   move_presses(box, pressed, dt);
   outline_.walls = box.walls;

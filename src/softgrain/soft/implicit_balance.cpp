@@ -81,7 +81,9 @@ void ImplicitDynamics::balance_momentum(double dt) {
     }
     given[b] = kinetic;
   };
-  share(balance, [&](int b, Message& message) { message(given[b]), message(grains.batches[b].velocity); });
+  share(balance, [&](int b, Message& message) {
+    message(given[b]), pass_known(b, grains.batches[b].velocity, message);
+  });
   for (int b = 0; b < batches(); ++b)
     for (int lane = 0; lane < Wide::size && grains.batches[b].grain[lane] >= 0; ++lane)
       work.inertia -= given[b][lane];

@@ -146,7 +146,7 @@ void ImplicitDynamics::follow_secant(bool accelerated) {
     correction_[b] = f;
     keep_rigid(b);
   };
-  share(follow, [&](int b, Message& message) { message(grains.batches[b].position); });
+  share(follow, [&](int b, Message& message) { pass_known(b, grains.batches[b].position, message); });
 }
 
 /// Nesterov's momentum, for each grain by itself, and from anew where it points against f (not where A is
@@ -184,7 +184,7 @@ void ImplicitDynamics::follow_momentum(bool first, bool accelerated) {
     for (std::size_t i = 0; i < f.size(); ++i) grains.batches[b].position[i] += shortened * move[i];
     keep_rigid(b);
   };
-  share(follow, [&](int b, Message& message) { message(grains.batches[b].position); });
+  share(follow, [&](int b, Message& message) { pass_known(b, grains.batches[b].position, message); });
 }
 
 }  // namespace softgrain

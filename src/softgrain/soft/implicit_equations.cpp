@@ -39,12 +39,15 @@ ImplicitDynamics::Failure ImplicitDynamics::factor(double dt, double proximal, S
     }
     failed[b] = batch.grain_in(A.factor());
     if (failed[b] >= 0) return;
+    compliance_[b].resize(compliance_size(batch));
     A.kept_inverse(compliance_[b]);
     hold_in_compliance(b);
   };
   share(factor_batch, [&](int b, Message& message) {
     message(failed[b]);
-    if (!grains.batches[b].topology->rigid()) message(compliance_[b]);
+    if (shares_contacts() || grains.batches[b].topology->rigid()) return;
+    compliance_[b].resize(compliance_size(grains.batches[b]));
+    message(compliance_[b]);
   });
   return none_failed(failed) ? Failure::none : Failure::indefinite_matrix;
 }

@@ -19,7 +19,7 @@ Wide dot(std::span<const Vec<2, Wide>> a, std::span<const Vec<2, Wide>> b) {
 void ImplicitDynamics::hold_spins(double dt) {
   held_.assign(grains.batches.size(), {});
   const std::vector<Wide> alone = grains_on_smooth_walls_alone(grains, contacts, friction_by_kind());
-  parallel_for(batches(), [&](int b) {
+  own_for(grains.shares, batches(), [&](int b) {
     HeldSpin& held = held_[b];
     if (!any(alone[b] > 0.0)) return;
     const GrainBatch& batch = grains.batches[b];

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "softgrain/core/parallel.hpp"
@@ -10,12 +11,19 @@ namespace {
 /// no energy at all, but packings then rattle and take twice the time (docs/decisions/0026).
 constexpr double normals_of_fast_steps = 0.65;
 
+/// kept = of_nodes, from the node `first` on; what was kept of those before does not matter.
+void keep_from(int first, const WideVectors& of_nodes, WideVectors& kept) {
+  kept.resize(of_nodes.size());
+  std::copy(of_nodes.begin() + first, of_nodes.end(), kept.begin() + first);
+}
+
 }  // namespace
 
 /// x at which Newton's method starts: x_n + dt v_n (+ dt^2 g in a quasi-static step) for grains in flight,
 /// x_n for others, whose velocity says how far they fell into their last places, not where they go; a
 /// periodic cell carries these along.
 void ImplicitDynamics::start(double dt) {
+  if (box.cell.any()) grains.know_all();  // it carries grains by their centres of mass
   grains.gather_outline(outline_.start);
   for (const Press& press : box.presses) box.set_speed(press, press.speed);
   walls_start_ = box.walls;
@@ -29,10 +37,10 @@ void ImplicitDynamics::start(double dt) {
   const Vec<2, Wide> fall{dt * dt * options.gravity[0], dt * dt * options.gravity[1]};
   parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];
-    start_[b] = batch.position;
-    velocity_start_[b] = batch.velocity;
+    keep_from(first_here(b), batch.position, start_[b]);
+    keep_from(first_here(b), batch.velocity, velocity_start_[b]);
     const Vec<2, Wide> carried = (1.0 - flying_[b]) * Wide(dt) * velocity_of_cell(b);
-    for (std::size_t i = 0; i < batch.position.size(); ++i) {
+    for (std::size_t i = first_here(b); i < batch.position.size(); ++i) {
       batch.position[i] += flying_[b] * Wide(dt) * flight_velocity(b, i) + carried;
       if (quasi_static(dt)) batch.position[i] += flying_[b] * fall;
     }
@@ -98,7 +106,7 @@ void ImplicitDynamics::set_flying(double dt) {
   if (adheres() && quasi_static(dt)) hold_touching();  // a fall would part them
   if (!slow(dt)) return;
   hold_touching();
-  for (int b = 0; b < batches(); ++b) {
+  const auto look = [&](int b) {
     const GrainBatch& batch = grains.batches[b];
     Wide fastest = 0.0;
     const Vec<2, Wide> of_cell = velocity_of_cell(b);
@@ -109,13 +117,14 @@ void ImplicitDynamics::set_flying(double dt) {
     }
     for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane)
       if (!(dt * std::sqrt(fastest[lane]) < largest_correction * mean_radius_)) flying_[b].set(lane, 0);
-  }
+  };
+  share(look, [&](int b, Message& message) { message(flying_[b]); });
 }
 
 void ImplicitDynamics::take_back() {
-  for (std::size_t b = 0; b < grains.batches.size(); ++b) {
-    grains.batches[b].position = start_[b];
-    grains.batches[b].velocity = velocity_start_[b];
+  for (int b = 0; b < batches(); ++b) {
+    keep_from(first_here(b), start_[b], grains.batches[b].position);
+    keep_from(first_here(b), velocity_start_[b], grains.batches[b].velocity);
   }
   box.walls = walls_start_;
   box.cell = cell_start_;

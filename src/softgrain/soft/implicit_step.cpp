@@ -77,8 +77,7 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains,
   }
   for (const GrainBatch& batch : grains.batches) {
     matrix_.emplace_back(batch.topology->pattern);
-    const std::size_t width = 2 * batch.topology->grid.outline_nodes();
-    compliance_.emplace_back(Wide::size * width * width);
+    compliance_.emplace_back(batch.topology->rigid() ? compliance_size(batch) : 0);
   }
   for (auto* vectors : {&start_, &velocity_start_, &half_solved_, &force_, &kept_, &correction_, &moved_})
     vectors->resize(grains.batches.size());
@@ -115,6 +114,7 @@ SoftStepReport ImplicitDynamics::step(double dt) {
     if (sub_step < shortest) give_up(failure, part);
   }
   report.converged = true;
+  if (box.cell.any()) grains.know_all();  // the stress of a cell asks for centres of mass after each step
   return report;
 }
 
@@ -195,7 +195,7 @@ bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   std::vector<OutlineContact> found = neighbours_.detect(grains, outline_);
   carry_to(found);
   contacts = std::move(found);
-  ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt, scratch_);
+  ElasticContacts system(grains, contacts, compliance_, outline_increment_, dt, scratch_, shares_contacts());
   AdhesiveContacts adhesive = adhesion_.contacts(grains, contacts, outline_, quasi_static(dt), attraction);
   PushedBodies pressed = pressed_walls(box, contacts, felt(), dt);
   system.push(pressed);
@@ -205,6 +205,7 @@ bool ImplicitDynamics::solve_contacts(double dt, SoftStepReport& report) {
   solver.tolerance = (floppy(dt) ? floppy_share : contact_share) * options.tolerance;
   const SolverReport solved =
       solve_adhesive<2>(system, adhesive, pressed, std::span(impulse), friction_of_contacts(), solver);
+  system.gather(impulse);
   report.sweeps += solved.sweeps;
   press_moved_ = move_presses(box, pressed, dt);
   if (press_moved_ > 0) outline_.walls = box.walls;

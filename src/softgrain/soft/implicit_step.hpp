@@ -203,7 +203,7 @@ class ImplicitDynamics {
   OutlineNeighbours neighbours_;
   OutlineAdhesion adhesion_;
   std::vector<BatchedCholesky> matrix_;
-  std::vector<OutlineCompliance> compliance_;
+  std::vector<OutlineCompliance> compliance_;  // of this rank's batches, and of others where sweeps need them
   ElasticScratch scratch_;
   int batches() const { return static_cast<int>(grains.batches.size()); }
   /// of_batch(b) for each batch on its rank, see shared_for.
@@ -211,7 +211,23 @@ class ImplicitDynamics {
   void share(const Work& of_batch, const Result& result) {
     shared_for(grains.shares, batches(), of_batch, result);
   }
+  /// Do ranks share the sweeps? Contacts of presses, and those that attract, take turns alone.
+  bool shares_contacts() const { return box.presses.empty() && !adheres(); }
+  static std::size_t compliance_size(const GrainBatch& batch) {
+    const std::size_t width = 2 * batch.topology->grid.outline_nodes();
+    return Wide::size * width * width;
+  }
   bool none_failed(std::span<const int> grain_of_batch);
+  /// The nodes of a batch from here on are known on all ranks: its outlines, of rigid grains all.
+  int first_known(int b) const {
+    const Topology& topology = *grains.batches[b].topology;
+    return topology.rigid() ? 0 : topology.grid.outline_begin;
+  }
+  /// And from here on those that this rank knows.
+  int first_here(int b) const { return grains.shares.mine(b) ? 0 : first_known(b); }
+  void pass_known(int b, WideVectors& of_nodes, Message& message) const {
+    message(std::span(of_nodes).subspan(static_cast<std::size_t>(first_known(b))));
+  }
 
   std::vector<WideVectors> start_, velocity_start_, half_solved_, force_, kept_;  // per batch
   std::vector<WideVectors> correction_, moved_;  // of the iteration before: f, and what became of x

@@ -5,12 +5,6 @@
 #include "softgrain/core/parallel.hpp"
 
 namespace softgrain {
-namespace {
-
-/// With fewer contacts threads cost more than they bring.
-constexpr int least_for_threads = 512;
-
-}  // namespace
 
 template <int Dim>
 inline Vec<Dim> LumpedSystem<Dim>::relative_velocity(const Row& row) const {
@@ -25,29 +19,22 @@ template <int Dim>
 template <int Dim>
 LumpedSystem<Dim>::LumpedSystem(std::span<const ContactOf<Dim>> contacts, const OutlineStateOf<Dim>& outline,
                                 std::span<ScatteredVec<Dim>> velocity, std::span<const double> inverse_mass,
-                                LumpedBodiesOf<Dim>& bodies, Scratch& scratch)
-    : rows_(scratch.rows),
+                                LumpedBodiesOf<Dim>& bodies, Scratch& scratch, bool shared)
+    : contacts_(contacts),
+      rows_(scratch.rows),
       strips_(scratch.strips),
       velocity_(velocity),
       inverse_mass_(inverse_mass),
       of_bodies_(contacts, outline, velocity, inverse_mass, bodies) {
   strips_.template sort<Dim>(contacts, outline);
   rows_.resize(contacts.size());
-  for_each_strip([&](int strip) {
+  if (shared && of_bodies_.contacts().empty()) share_strips(outline.cell.repeats[0]);
+  for_each_own_strip([&](int strip) {
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
       if (!of_bodies_.has(strips_.order[k])) rows_[k] = row_of(contacts[strips_.order[k]], outline);
       rows_[k].contact = strips_.order[k];
     }
   });
-}
-
-/// work(strip) for all even strips, then for all odd ones.
-template <int Dim>
-template <class Work>
-void LumpedSystem<Dim>::for_each_strip(const Work& work) const {
-  if (size() >= least_for_threads) return parallel_alternate(strips_.count(), work);
-  for (const int first : {0, 1})
-    for (int strip = first; strip < strips_.count(); strip += 2) work(strip);
 }
 
 template <int Dim>
@@ -117,6 +104,7 @@ Violation LumpedSystem<Dim>::sweep(std::span<Vec<Dim>> impulse, std::span<const 
     }
     of_strip[strip] = sum;
   });
+  row_of_strips_.tell(strips_.count(), [&](int strip, Message& message) { message(of_strip[strip]); });
   Violation violation;
   for (const Violation& of_one : of_strip) violation += of_one;
   for (const int c : of_bodies_.contacts())

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "softgrain/contact/pushed_bodies.hpp"
 #include "softgrain/contact/residual.hpp"
 #include "softgrain/contact/tangents.hpp"
+#include "softgrain/core/shared_row.hpp"
 #include "softgrain/soft/contact_strips.hpp"
 #include "softgrain/soft/lumped_bodies.hpp"
 #include "softgrain/soft/lumped_row.hpp"
@@ -24,10 +26,11 @@ class LumpedSystem {
   struct Scratch;
   /// velocity: (outline vertices) [m/s], u_found when constructed, then changed by the caller and by
   /// impulses, as are those of the rigid bodies; inverse_mass: (outline vertices) [m/kg]. Keeps references to
-  /// the velocities, the masses, the bodies and the scratch.
+  /// the contacts, the velocities, the masses, the bodies and the scratch. With `shared` ranks share the
+  /// strips: nothing but sweeps and apply_impulses may look at contacts and velocities then, until gather.
   LumpedSystem(std::span<const ContactOf<Dim>> contacts, const OutlineStateOf<Dim>& outline,
                std::span<ScatteredVec<Dim>> velocity, std::span<const double> inverse_mass,
-               LumpedBodiesOf<Dim>& bodies, Scratch& scratch);
+               LumpedBodiesOf<Dim>& bodies, Scratch& scratch, bool shared = false);
 
   int size() const { return static_cast<int>(rows_.size()); }
   Mat<Dim> delassus_block(int contact) const {
@@ -48,6 +51,8 @@ class LumpedSystem {
                   const SolverOptions& options);
   /// Sweeps then move these bodies too. Keeps a reference.
   void push(PushedBodies& bodies) { pushed_ = &bodies; }
+  /// On all ranks: the velocities and these impulses, from the ranks that have them.
+  void gather(std::span<Vec<Dim>> impulse);
 
  private:
   using Row = LumpedRow<Dim>;
@@ -59,11 +64,18 @@ class LumpedSystem {
   void apply_impulse(const Row& row, const Vec<Dim>& dp);
   void solve(const Row& row, Vec<Dim>& p, double friction, const SolverOptions& options,
              Violation& violation);
-  template <class Work>
-  void for_each_strip(const Work& work) const;
+  // no templates, so that the law is compiled into the sweeps (decision 0072)
+  void for_each_strip(const std::function<void(int strip)>& work);
+  void for_each_own_strip(const std::function<void(int strip)>& work) const;
+  void share_strips(bool ring);
+  template <class Visit>
+  void for_each_vertex(int strip, const Visit& visit) const;
 
-  std::vector<Row>& rows_;  // strip by strip
+  std::span<const ContactOf<Dim>> contacts_;
+  std::vector<Row>& rows_;  // strip by strip; of this rank's
   ContactStrips& strips_;
+  SharedRow row_of_strips_;
+  std::vector<std::vector<int>> at_seam_;  // vertices that the strips of a seam share
   std::span<ScatteredVec<Dim>> velocity_;
   std::span<const double> inverse_mass_;
   BodyContacts<Dim> of_bodies_;

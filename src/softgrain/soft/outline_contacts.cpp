@@ -120,6 +120,7 @@ void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineS
   reference_ = state.position;
   reference_cell_ = state.cell;
   parts_.resize((grains.outline_size() + part_size - 1) / part_size);
+  shares_ = Shares(std::vector<double>(parts_.size(), 1.0));
   segment_ = 0;
   for (int g = 0; g < grains.size(); ++g) segment_ += segment_length(grains, g) / grains.size();
   double longest = 0;
@@ -131,10 +132,12 @@ void OutlineNeighbours::find_candidates(const SoftGrains& grains, const OutlineS
   const std::span<const Vec<2>> position = images ? images->position : state.position;
   const std::span<const int> vertex = images ? std::span<const int>(images->point) : std::span<const int>();
   const CellGrid<2> grid(position, reach);
-  parallel_for(static_cast<int>(parts_.size()), [&](int k) {
-    Part& part = parts_[k];
-    part.begin = k * part_size;
+  for (int k = 0; Part & part : parts_) {
+    part.begin = k++ * part_size;
     part.end = std::min(part.begin + part_size, grains.outline_size());
+  }
+  own_for(shares_, static_cast<int>(parts_.size()), [&](int k) {
+    Part& part = parts_[k];
     part.candidates.clear();
     std::vector<Nearest> near;
     for (int v = part.begin; v < part.end; ++v) {
@@ -226,8 +229,10 @@ std::vector<OutlineContact> OutlineNeighbours::detect(const SoftGrains& grains, 
   parallel_for(static_cast<int>(parts_.size()), [&](int k) {
     for (int v = parts_[k].begin; v < parts_[k].end; ++v) on_the_way_[v] = state.on_the_way(v);
   });
-  parallel_for(static_cast<int>(parts_.size()),
-               [&](int k) { find_contacts(grains, state, margin * segment_ + range_, parts_[k]); });
+  shared_for(
+      shares_, static_cast<int>(parts_.size()),
+      [&](int k) { find_contacts(grains, state, margin * segment_ + range_, parts_[k]); },
+      [&](int k, Message& message) { message.list(parts_[k].contacts); }, Lengths::told);
   std::size_t count = 0;
   for (const Part& part : parts_) count += part.contacts.size();
   std::vector<OutlineContact> contacts;

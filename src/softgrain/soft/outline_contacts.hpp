@@ -68,7 +68,7 @@ struct OutlineContact {
 
 /// Finds the contacts of outlines: which grains a vertex may meet is looked up among cells, and kept until
 /// some vertex has moved far; where on their outline it faces them is walked to from where it did last. Cost
-/// O(vertices).
+/// O(vertices), which ranks share: all call it alike, and all get all contacts.
 class OutlineNeighbours {
  public:
   /// From now on contacts are kept up to at least this gap [m], and where vertices_only(kind, other kind or
@@ -98,6 +98,7 @@ class OutlineNeighbours {
                               double height) const;
 
   std::vector<Part> parts_;        // all vertices, in order
+  Shares shares_;                  // of parts: whose candidates a rank knows
   std::vector<Vec<2>> reference_;  // positions when the candidates were found
   PeriodicCell<2> reference_cell_;
   std::vector<Vec<2>> on_the_way_;               // where normals are taken [m]

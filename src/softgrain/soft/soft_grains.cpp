@@ -80,12 +80,19 @@ GrainsOf<Dim>::GrainsOf(std::vector<PlacementOf<Dim>> grains, std::vector<GrainM
 
 template <int Dim>
 void GrainsOf<Dim>::gather() {
-  if (shares.alone()) return;
-  shared_for(
-      shares, static_cast<int>(batches.size()), [](int) {},
+  collect(
+      shares, static_cast<int>(batches.size()), [](int b) { return b; },
       [&](int b, Message& message) {
         message(batches[b].position), message(batches[b].velocity), message(batches[b].history);
       });
+}
+
+template <int Dim>
+void GrainsOf<Dim>::know_all() {
+  if (shares.alone()) return;
+  shared_for(
+      shares, static_cast<int>(batches.size()), [](int) {},
+      [&](int b, Message& message) { message(batches[b].position), message(batches[b].velocity); });
 }
 
 template <int Dim>

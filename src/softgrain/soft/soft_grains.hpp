@@ -156,6 +156,7 @@ class GrainsOf {
   void scatter_outline(std::span<const Vec<Dim>> value, const Batch& batch, WidePlaces<Dim>& nodes) const;
 
   /// The batch and lane of a grain.
+  int batch_number(int grain) const { return place_[grain].batch; }
   std::pair<const Batch*, int> batch_of(int grain) const {
     return {&batches[place_[grain].batch], place_[grain].lane};
   }
@@ -167,9 +168,10 @@ class GrainsOf {
   /// number; -1 if none does. further: (grains) of each, by how much more it may; empty: none.
   int runaway_grain(double dt, std::span<const double> further = {}) const;
 
-  /// On all ranks at once: each gets positions, velocities and history of all batches from the ranks that
-  /// have them (ModelOf::gather).
+  /// On all ranks at once: the first one gets positions, velocities and history of all batches from the ranks
+  /// that have them (ModelOf::gather); all get positions and velocities.
   void gather();
+  void know_all();
 
   std::vector<Batch> batches;
   Shares shares;  ///< of batches: on which rank each is worked on

@@ -67,24 +67,26 @@ Json libraries() {
 Json json_of(const RankRecord& record) {
   const Communicator& all = communicator();
   const SharingAccount& account = all.account;
-  const double shared = record.cpu_shared_mean * all.ranks();
+  const double shared = record.cpu_shared.mean * all.ranks();
   return {{"count", all.ranks()},
           {"hosts", all.hosts()},
           {"exchanges", account.exchanges},
+          {"messages_by_first", account.messages},
           {"bytes_sent_by_first", account.bytes_sent},
           {"bytes_received_by_first", account.bytes_received},
           {"cpu_shared", shared},
           {"cpu_exchanges", record.cpu_exchanges},
           {"cpu_alike", record.cpu_all - shared - record.cpu_exchanges},
-          {"imbalance", record.cpu_shared_mean > 0 ? record.cpu_shared_max / record.cpu_shared_mean : 1}};
+          {"imbalance", record.cpu_shared.largest_over_mean()},
+          {"peak_memory_bytes_mean", record.memory.mean},
+          {"peak_memory_bytes_largest", record.memory.largest}};
 }
 
 Json machine() {
-  constexpr std::int64_t kibibyte = 1024;
   return {{"host", host_name()},
           {"cpu", cpu_name()},
           {"threads", threads()},
-          {"peak_memory_bytes", usage().ru_maxrss * kibibyte}};
+          {"peak_memory_bytes", peak_memory()}};
 }
 
 }  // namespace
@@ -110,6 +112,11 @@ double cpu_seconds() {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
   return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+std::int64_t peak_memory() {
+  constexpr std::int64_t kibibyte = 1024;
+  return usage().ru_maxrss * kibibyte;
 }
 
 namespace {

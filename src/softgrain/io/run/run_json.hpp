@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "softgrain/core/communicator.hpp"
 #include "softgrain/experiment/run.hpp"
 
 namespace softgrain {
@@ -18,9 +19,10 @@ struct RunOrigin {
 
 /// How ranks shared a run: of this process and those beside it, not of earlier parts.
 struct RankRecord {
-  double cpu_shared_mean = 0, cpu_shared_max = 0;  ///< CPU time of a rank in shared loops [s]
-  double cpu_exchanges = 0;                        ///< of all ranks, waiting included [s]
-  double cpu_all = 0;                              ///< of all ranks together [s]
+  OverRanks cpu_shared;      ///< CPU time in shared loops [s]
+  OverRanks memory;          ///< the most that a rank has held so far [bytes]
+  double cpu_exchanges = 0;  ///< of all ranks, waiting included [s]
+  double cpu_all = 0;        ///< of all ranks together [s]
 };
 
 /// What run.json tells about a run: where it came from, how far it is, and what it reached.
@@ -58,5 +60,7 @@ std::string utc_now();
 
 /// CPU time of this process so far [s].
 double cpu_seconds();
+/// The most memory that this process has held so far [bytes].
+std::int64_t peak_memory();
 
 }  // namespace softgrain

@@ -72,12 +72,10 @@ bool RunRecorder::snapshot_is_due() const {
 void RunRecorder::add_up_ranks() {
   Communicator& all = communicator();
   const SharingAccount account = all.account;
-  const double mean = all.sum(account.cpu_shared) / all.ranks();
-  record_.ranks = {
-      .cpu_shared_mean = mean,
-      .cpu_shared_max = 1e-6 * static_cast<double>(all.largest(std::llround(1e6 * account.cpu_shared))),
-      .cpu_exchanges = all.sum(account.cpu_exchanges),
-      .cpu_all = all.sum(cpu_seconds())};
+  record_.ranks = {.cpu_shared = over_ranks(account.cpu_shared),
+                   .memory = over_ranks(static_cast<double>(peak_memory())),
+                   .cpu_exchanges = all.sum(account.cpu_exchanges),
+                   .cpu_all = all.sum(cpu_seconds())};
 }
 
 /// An error there is one of all ranks.
