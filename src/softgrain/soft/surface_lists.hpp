@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "softgrain/core/shared_loop.hpp"
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/cell_grid.hpp"
 #include "softgrain/geometry/images.hpp"
 #include "softgrain/soft/surface_contacts.hpp"
@@ -70,17 +70,14 @@ inline void add_wall_contacts(const OutlineStateOf<3>& state, SurfaceContact con
   }
 }
 
-/// add(i, list) for i = 0 .. count - 1 on all threads of all ranks, `at_once` of them in one go; the lists
-/// one after the other, on all ranks.
+/// add(i, list) for i = 0 .. count - 1 on all threads, `at_once` of them in one go; the lists one after the
+/// other.
 template <class Item, class Add>
 void append_in_parallel(int count, int at_once, std::vector<Item>& all, const Add& add) {
   std::vector<std::vector<Item>> parts((count + at_once - 1) / at_once);
-  shared_for(
-      Shares(std::vector<double>(parts.size(), 1.0)), static_cast<int>(parts.size()),
-      [&](int k) {
-        for (int i = k * at_once; i < std::min(count, (k + 1) * at_once); ++i) add(i, parts[k]);
-      },
-      [&](int k, Message& message) { message.list(parts[k]); }, Lengths::told);
+  parallel_for(static_cast<int>(parts.size()), [&](int k) {
+    for (int i = k * at_once; i < std::min(count, (k + 1) * at_once); ++i) add(i, parts[k]);
+  });
   for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
 }
 
