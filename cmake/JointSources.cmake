@@ -11,9 +11,9 @@ function(softgrain_join target lines)
     string(REGEX MATCH "^([0-9]+) (.*)$" line "${line}")
     set_source_files_properties("${CMAKE_MATCH_2}" PROPERTIES UNITY_GROUP "joint_${CMAKE_MATCH_1}")
   endforeach()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP
-    UNITY_BUILD_CODE_BEFORE_INCLUDE "#pragma GCC diagnostic ignored \"-Wshadow\"")  # of a hidden name of another source
+  set(pragmas "#pragma GCC diagnostic ignored \"-Wshadow\"")  # of a hidden name of another source
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # for it every source of a joint is a header, whose types nobody should hide
-    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+    string(APPEND pragmas "\n#pragma GCC diagnostic ignored \"-Wsubobject-linkage\"")
   endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP UNITY_BUILD_CODE_BEFORE_INCLUDE "${pragmas}")
 endfunction()
