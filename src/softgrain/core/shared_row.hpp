@@ -29,6 +29,24 @@ class SharedRow {
   const Shares& shares() const { return shares_; }
   std::span<const Seam> seams() const { return seams_; }
 
+  /// For each seam the items of 0 .. items - 1 that both of its groups have, where for_each(group, visit)
+  /// visits those of a group, with repeats.
+  template <class ForEach>
+  std::vector<std::vector<int>> items_at_seams(std::size_t items, const ForEach& for_each) const {
+    std::vector<std::vector<int>> of_seams;
+    std::vector<int> seen(items, -1);
+    int mark = 0;
+    for (const Seam& seam : seams_) {
+      std::vector<int>& both = of_seams.emplace_back();
+      for_each(seam.left, [&](int i) { seen[i] = mark; });
+      for_each(seam.right, [&](int i) {
+        if (seen[i] == mark) both.push_back(i), seen[i] = mark + 1;
+      });
+      mark += 2;
+    }
+    return of_seams;
+  }
+
   /// shared(s, message) names the data that both groups of seam s share, in the same order on both ranks.
   using Shared = std::function<void(std::size_t seam, Message& message)>;
   /// work(group) for the even groups of 0 .. groups - 1, then for the odd ones, on this rank's threads; it

@@ -36,16 +36,8 @@ void ElasticContacts::share_groups() {
   for (int group = 0; group < levels_.groups(); ++group)
     for_each_grain(group, [&](int g) { weight[group] += grain_[g].width; });
   row_of_groups_ = {weight, false};
-  std::vector<int> seen(grain_.size(), -1);
-  int mark = 0;
-  for (const auto& [left, right, rank] : row_of_groups_.seams()) {
-    std::vector<int>& both = at_seam_.emplace_back();
-    for_each_grain(left, [&](int g) { seen[g] = mark; });
-    for_each_grain(right, [&](int g) {
-      if (seen[g] == mark) both.push_back(g), seen[g] = mark + 1;
-    });
-    mark += 2;
-  }
+  at_seam_ = row_of_groups_.items_at_seams(
+      grain_.size(), [&](int group, const auto& visit) { for_each_grain(group, visit); });
 }
 
 /// From the ranks that have the grains to those whose groups they are in, two at most: one message between

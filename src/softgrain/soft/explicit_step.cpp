@@ -210,10 +210,18 @@ void ExplicitStep<Dim>::pass_kicked(int b, Message& message) {
 
 template <int Dim>
 Vec<Dim, Wide> ExplicitStep<Dim>::weight(const BatchOf<Dim>& batch, int node) const {
-  const Wide mass = grains.node_mass(batch, node);
   Vec<Dim, Wide> force;
-  for (int d = 0; d < Dim; ++d) force[d] = options.gravity[d] * mass;
+  for (int d = 0; d < Dim; ++d) force[d] = options.gravity[d] * grains.node_mass(batch, node);
   return force;
+}
+
+/// The work of a node's forces over its way [J/m in the plane].
+template <int Dim>
+inline void ExplicitStep<Dim>::add_work(const BatchOf<Dim>& batch, int node,
+                                        const Vec<Dim, Wide>& internal_force, const Vec<Dim, Wide>& way,
+                                        BatchStep& step) const {
+  step.internal += dot(internal_force, way);
+  if (!(options.gravity == Vec<Dim>{})) step.gravity += dot(weight(batch, node), way);
 }
 
 template <int Dim>
@@ -240,14 +248,6 @@ void ExplicitStep<Dim>::kick_batch(double dt, const WidePlaces<Dim>& force, Batc
     batch.position[i] += Wide(dt) * batch.velocity[i];
     add_work(batch, i, force[i], Wide(dt / 2) * (v + batch.velocity[i]), step);
   }
-}
-
-/// The work of a node's forces over its way [J/m in the plane].
-template <int Dim>
-void ExplicitStep<Dim>::add_work(const BatchOf<Dim>& batch, int node, const Vec<Dim, Wide>& internal_force,
-                                 const Vec<Dim, Wide>& way, BatchStep& step) const {
-  step.internal += dot(internal_force, way);
-  if (!(options.gravity == Vec<Dim>{})) step.gravity += dot(weight(batch, node), way);
 }
 
 /// x+ = x + dt v+ of a batch's outlines. The work over the step is that of a motion by dt (v+ + v)/2, in

@@ -45,16 +45,8 @@ void LumpedSystem<Dim>::share_strips(bool ring) {
   for (int strip = 0; strip < strips_.count(); ++strip)
     weight.push_back(strips_.begin[strip + 1] - strips_.begin[strip]);
   row_of_strips_ = {weight, ring && strips_.count() > 1};
-  std::vector<int> seen(velocity_.size(), -1);
-  int mark = 0;
-  for (const auto& [left, right, rank] : row_of_strips_.seams()) {
-    std::vector<int>& both = at_seam_.emplace_back();
-    for_each_vertex(left, [&](int v) { seen[v] = mark; });
-    for_each_vertex(right, [&](int v) {
-      if (seen[v] == mark) both.push_back(v), seen[v] = mark + 1;
-    });
-    mark += 2;
-  }
+  at_seam_ = row_of_strips_.items_at_seams(
+      velocity_.size(), [&](int strip, const auto& visit) { for_each_vertex(strip, visit); });
 }
 
 template <int Dim>
