@@ -40,6 +40,9 @@ inline Words tiny_path(const std::string& name) {
     add({"loading.wall_velocity=\"1 m/s\"", "loading.max_strain=0.17", "loading.unload_at=[0.15]",
          "loading.unload_by=0.04", "loading.max_stress=0", "loading.max_packing_fraction=0",
          "sample.packing_fraction=0.62", "kind.rigid.share=0.5"});
+  if (name == "bonded_rigid")
+    add({"sample.grains=8", "bpm.primaries=20", "loading.wall_velocity=\"5 m/s\"", "loading.unload_at=[0.25]",
+         "loading.unload_by=0.04", "loading.max_stress=0"});
   if (name == "shapes")
     add({"kind.ellipse.number=2", "kind.square.number=2", "kind.drop.number=2",
          "loading.wall_velocity=\"4 m/s\"", "loading.max_strain=0.48", "sample.packing_fraction=0.58"});
@@ -113,9 +116,9 @@ inline std::vector<TinyCase> tiny_cases() {
       cases.push_back({name, source, tiny_path(name), 0});
     else if (name == "die" || name == "tablet")
       cases.push_back({name, source, tiny_path(name), 5});
-    else if (name == "rubber_sand" || name == "soft_rigid" || name == "compaction_3d" ||
-             name == "sphere_walls" || name == "bonded_sphere" || name == "bonded_spheres" ||
-             name == "hydrogels")
+    else if (name == "rubber_sand" || name == "soft_rigid" || name == "bonded_rigid" ||
+             name == "compaction_3d" || name == "sphere_walls" || name == "bonded_sphere" ||
+             name == "bonded_spheres" || name == "hydrogels")
       cases.push_back({name, source, tiny_path(name)});
     else if (name == "one_grain_box" || name == "diametral_plastic")
       cases.push_back({name, source, tiny_path(name), 3});
@@ -163,6 +166,12 @@ inline std::vector<TinyCase> tiny_cases() {
                                "mpm.relaxation_share_1=0.5", "mpm.relaxation_time_1=\"0.1 ms\"",
                                "loading.max_strain=0.16", "loading.unload_at=[0.14]"});
       cases.push_back({"periodic-compaction_3d", source, more});
+    }
+    if (name == "bonded_rigid") {
+      Words more = tiny_path(name);
+      more.insert(more.end(),
+                  {"experiment.dimension=3", "box.x=\"periodic\"", "sample.packing_fraction=0.3"});
+      cases.push_back({"space-bonded_rigid", source, more});
     }
     if (name == "soft_rigid") {
       Words more = tiny_path(name);

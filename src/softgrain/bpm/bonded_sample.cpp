@@ -6,6 +6,7 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/geometry/ball.hpp"
 #include "softgrain/geometry/images.hpp"
+#include "softgrain/rigid/close_pairs.hpp"
 
 namespace softgrain {
 namespace {
@@ -41,9 +42,35 @@ int choice_of(const AggregateLibrary& c, int grain, double radius) {
   return std::clamp(static_cast<int>(share * c.count), 0, c.count - 1);
 }
 
+/// visit(i, j, x_j - x_i) of all particles that may overlap. Each wide one looks at all others.
+template <int Dim, class Visit>
+void for_each_near_pair(const RigidParticles<Dim>& particles, const Visit& visit) {
+  const std::vector<char> wide = wide_bodies(particles.radius);
+  std::vector<int> others;
+  std::vector<Vec<Dim>> position;
+  double widest = 0;
+  for (int i = 0; i < particles.size(); ++i) {
+    if (wide[i] != 0) continue;
+    others.push_back(i);
+    position.push_back(particles.position[i]);
+    widest = std::max(widest, particles.radius[i]);
+  }
+  for_each_close_pair<Dim>(
+      position, particles.cell, 2 * widest,
+      [&](int k, int l, const Vec<Dim>& d, const auto&) { visit(others[k], others[l], d); });
+  for (int i = 0; i < particles.size(); ++i) {
+    if (wide[i] == 0) continue;
+    for (int j = 0; j < particles.size(); ++j) {
+      if (wide[j] != 0 && j <= i) continue;
+      const Vec<Dim> d = particles.position[j] - particles.position[i];
+      visit(i, j, particles.cell.any() ? d + particles.cell.shift(particles.cell.nearest(d)) : d);
+    }
+  }
+}
+
 /// Moves grains as wholes out of the walls and out of each other once; returns the largest overlap met [m].
 template <int Dim>
-double push_apart(RigidParticles<Dim>& particles, std::span<Vec<Dim>> shift, double widest) {
+double push_apart(RigidParticles<Dim>& particles, std::span<Vec<Dim>> shift) {
   double worst = 0;
   std::vector<Vec<Dim>> push(shift.size());
   std::vector<double> deepest(shift.size(), 0);  // of a grain's overlaps: the one that moves it
@@ -58,7 +85,7 @@ double push_apart(RigidParticles<Dim>& particles, std::span<Vec<Dim>> shift, dou
   for (int i = 0; i < particles.size(); ++i)
     for (const Wall<Dim>& wall : particles.walls)
       meet(particles.grain[i], R[i] - dot(x[i] - wall.point, wall.normal), wall.normal);
-  for_each_close_pair<Dim>(x, particles.cell, 2 * widest, [&](int i, int j, const Vec<Dim>& d, const auto&) {
+  for_each_near_pair(particles, [&](int i, int j, const Vec<Dim>& d) {
     const int a = particles.grain[i], b = particles.grain[j];
     if (a == b) return;
     const double r = norm(d), overlap = R[i] + R[j] - r;
@@ -76,10 +103,9 @@ template <int Dim>
 double separate_grains(BpmSampleOf<Dim>& sample, const BoxSampleOf<Dim>& box) {
   std::vector<Vec<Dim>> shift(box.grains.size());
   const auto& radius = sample.particles.radius;
-  const double widest = *std::max_element(radius.begin(), radius.end());
   const double tolerance = 1e-3 * *std::min_element(radius.begin(), radius.end());
   constexpr int most_passes = 5000;
-  for (int pass = 0; push_apart<Dim>(sample.particles, shift, widest) > tolerance; ++pass)
+  for (int pass = 0; push_apart<Dim>(sample.particles, shift) > tolerance; ++pass)
     require(pass < most_passes,
             "could not place {} grains of primaries without overlap; use a smaller sample.packing_fraction",
             box.grains.size());
@@ -103,6 +129,7 @@ auto turn_by(const Mat<3>& rotation) {
 template <int Dim>
 std::vector<AggregateOf<Dim>> prepare_library(const AggregateLibrary& c) {
   std::vector<AggregateOf<Dim>> library;
+  if (c.primaries == 1) return {{.position = {{}}, .radius = {1}, .mean_distance = 2}};
   for (int k = 0; k < c.count; ++k) {
     const double size = size_of(c, k);
     library.push_back(prepare_aggregate<Dim>(

@@ -11,7 +11,7 @@ namespace softgrain {
 /// The aggregates of which the grains of a packing are copies.
 struct AggregateLibrary {
   int count = 6;         ///< different ones
-  int primaries = 1750;  ///< of each, or of the smallest grain
+  int primaries = 1750;  ///< of each, or of the smallest grain; 1: grains are rigid disks (spheres)
   double size_ratio = 1.625, gamma = 7;
   /// The numbers of primaries grow as the squares of the radii (cubes in space), spread evenly from the
   /// smallest to the largest or as the list says, so that primaries in grains of any size are about equal;
@@ -30,7 +30,7 @@ template <int Dim>
 struct BpmSampleOf {
   RigidParticles<Dim> particles;      ///< grain after grain, at rest; walls as BoxWall
   std::vector<int> begin;             ///< (grains + 1) first primary of each grain
-  std::vector<double> mean_distance;  ///< <a0> of each grain [m]
+  std::vector<double> mean_distance;  ///< <a0> of each grain [m]; the diameter of a rigid one
   double displaced = 0;               ///< furthest that a grain was moved from its place, over its radius
 };
 using BpmSample = BpmSampleOf<2>;

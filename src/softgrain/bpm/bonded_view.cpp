@@ -26,6 +26,25 @@ struct Primaries {
   double probe;
 };
 
+/// 1 for primaries that are a grain of their own, which then is rigid.
+std::vector<char> lone_primaries(const std::vector<GrainRange>& grains, int primaries) {
+  std::vector<char> lone(primaries, 0);
+  for (const GrainRange& grain : grains)
+    if (grain.end - grain.begin == 1) lone[grain.begin] = 1;
+  return lone;
+}
+
+/// Of the outline that a contact takes [m]. In a row of touching primaries each takes its diameter, also on
+/// what is flat, as walls and rigid grains are; two of these meet at a point.
+template <int Dim>
+double outline_length(const RigidParticles<Dim>& particles, const std::vector<char>& is_rigid, int a, int b) {
+  const auto radius = [&](int i) {
+    return i < particles.size() && is_rigid[i] == 0 ? particles.radius[i] : 0;
+  };
+  const double of_a = radius(a), of_b = radius(b);
+  return of_a > 0 && of_b > 0 ? of_a + of_b : 2 * (of_a + of_b);
+}
+
 /// About a direction for each primary of the surface.
 int cells_of_surface(std::size_t primaries) {
   return std::clamp(static_cast<int>(std::lround(1.3 * std::cbrt(primaries))), 4, 24);
@@ -39,6 +58,7 @@ std::vector<ContactPointOf<Dim>> contact_points(const RigidDynamics<Dim>& dynami
   const auto& particles = dynamics.particles;
   const auto& contacts = dynamics.contacts;
   const int n = particles.size();
+  const std::vector<char> is_rigid = lone_primaries(dynamics.reference.grains, n);
   std::vector<ContactPointOf<Dim>> points;
   for (int c = 0; c < contacts.size(); ++c) {
     const int a = contacts.body_a[c], b = contacts.body_b[c];
@@ -54,8 +74,7 @@ std::vector<ContactPointOf<Dim>> contact_points(const RigidDynamics<Dim>& dynami
                       .force = pull > 0 ? push - pull * normal : push,
                       .normal = normal,
                       .position = particles.position[a] + particles.radius[a] * normal,
-                      // a row of touching primaries: each takes its diameter of the outline
-                      .length = touches ? particles.radius[a] + particles.radius[wall ? a : b] : 0,
+                      .length = touches ? outline_length(particles, is_rigid, a, b) : 0,
                       .image = contacts.shift(c)});
   }
   return points;

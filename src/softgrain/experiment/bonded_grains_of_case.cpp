@@ -3,6 +3,7 @@
 
 #include "softgrain/bpm/bonded_grains.hpp"
 #include "softgrain/bpm/bonded_sample.hpp"
+#include "softgrain/core/error.hpp"
 #include "softgrain/experiment/adhesion_of_case.hpp"
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
@@ -86,7 +87,7 @@ BondedGrainsSetupOf<Dim> setup_between_walls(const Case& c) {
           .sigma_I = cohesive_pressure<Dim>(attraction_of(c), mean_distance)};
 }
 
-/// sigma_I is the same in every grain of a kind.
+/// sigma_I is the same in every grain of a kind. A rigid grain is one primary.
 template <int Dim>
 BondedGrainsSetupOf<Dim> setup_in_a_box(const Case& c) {
   const BoxSampleOf<Dim> box = box_sample_of<Dim>(c);
@@ -100,16 +101,17 @@ BondedGrainsSetupOf<Dim> setup_in_a_box(const Case& c) {
   }
   BpmSampleOf<Dim> sample = fill_box(box, library, options);
   const double smallest = *std::min_element(sample.mean_distance.begin(), sample.mean_distance.end());
-  BondedGrainsSetupOf<Dim> setup{
-      .particles = std::move(sample.particles),
-      .grain_radius = {},
-      .laws = {},
-      .kind = {},
-      .friction = {},
-      .options = {},
-      .skin = skin_in_a_box * smallest,
-      .density = 0,
-      .sigma_I = least_of_kinds(c, [](const Case& of_kind) { return of_kind.bpm.cohesive_pressure; })};
+  BondedGrainsSetupOf<Dim> setup{.particles = std::move(sample.particles),
+                                 .grain_radius = {},
+                                 .laws = {},
+                                 .kind = {},
+                                 .friction = {},
+                                 .options = {},
+                                 .skin = skin_in_a_box * smallest,
+                                 .density = 0,
+                                 .sigma_I = least_of_kinds(with_bonded_kinds(c), [](const Case& of_kind) {
+                                   return of_kind.bpm.cohesive_pressure;
+                                 })};
   for (std::size_t g = 0; g < box.grains.size(); ++g) {
     const Case::Bpm& bpm = kind[static_cast<std::size_t>(box.grains[g].kind)].bpm;
     setup.grain_radius.push_back(box.grains[g].radius);
@@ -118,6 +120,18 @@ BondedGrainsSetupOf<Dim> setup_in_a_box(const Case& c) {
         {.F0 = attraction_with<Dim>(bpm.cohesive_pressure, sample.mean_distance[g]), .gamma = bpm.exponent});
   }
   return setup;
+}
+
+/// The attraction of a primary is that of its share of an outline, which a rigid disk does not have.
+void refuse_adhesion_of_rigid(const Case& c, const PairAdhesion& pair) {
+  for (const int kind : {pair.kind, pair.other}) {
+    if (kind == PairAdhesion::wall || c.kinds.empty()) continue;
+    require(
+        c.kinds[kind].model == GrainModel::bpm,
+        "not yet: rigid grains among bonded ones that adhere (kind '{}'): give each [[pair]] of this kind "
+        "surface_energy = 0",
+        c.kinds[kind].name);
+  }
 }
 
 }  // namespace
@@ -133,6 +147,7 @@ PlacedModelOf<Dim> bonded_grains_of(const Case& c) {
   for (int k = 0; k < kinds_of(c); ++k)
     setup.friction.inside.push_back(case_of_kind(c, k).bpm.inner_friction);
   setup.adhesion = adhesion_of(c);
+  for (const PairAdhesion& pair : setup.adhesion) refuse_adhesion_of_rigid(c, pair);
   setup.options = rigid_step_options(c);
   setup.density = largest_of_kinds(c, [](const Case& kind) { return kind.grain.density; });
   setup.gravity = gravity_of<Dim>(c);

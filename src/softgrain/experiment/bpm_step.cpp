@@ -70,7 +70,7 @@ double period_of_adhesion(const Case& c, const SmallestPrimary& smallest) {
 double mean_touching_distance(const Case& c) { return SmallestPrimary(c).radius * (1 + c.bpm.size_ratio); }
 
 double bond_period(const Case& c) {
-  return least_of_kinds(c, [&](const Case& kind) {
+  return least_of_kinds(with_bonded_kinds(c), [&](const Case& kind) {
     const SmallestPrimary smallest(kind);
     const double F0 = attraction_of(kind, mean_touching_distance(kind));
     const double a0 = 2 * smallest.radius;
@@ -83,7 +83,8 @@ double critical_bond_step(const Case& c) { return bond_period(c) / std::numbers:
 
 double stable_bond_step(const Case& c) {
   const double by_bonds = paper_step * (bond_period(c) / bond_period(Case{}));
-  const double radius = least_of_kinds(c, [](const Case& kind) { return SmallestPrimary(kind).radius; });
+  const double radius =
+      least_of_kinds(with_bonded_kinds(c), [](const Case& kind) { return SmallestPrimary(kind).radius; });
   return std::min(by_bonds, wall_share * radius / c.loading.wall_velocity);
 }
 

@@ -166,7 +166,7 @@ struct Case {
   struct Kind {
     std::string name;
     int grains = 0;                      ///< in the box
-    GrainModel model = GrainModel::mpm;  ///< or rigid; all of them bpm, or none
+    GrainModel model = GrainModel::mpm;  ///< rigid ones mix with those of one other model
     Grain grain;                         ///< but its radius
     Bpm bpm;                             ///< of bonded grains
     MaterialLaw law = MaterialLaw::neo_hookean;

@@ -69,6 +69,7 @@ double loading_time(const Case& c) {
 /// Primaries of all grains.
 double primaries(const Case& c) {
   if (!c.kinds.empty()) return sum_of_kinds(c, primaries);
+  if (is_rigid(c)) return grains(c);
   if (!is_in_a_box(c) || c.bpm.equal == EqualPrimaries::count) return grains(c) * c.bpm.primaries;
   const double R = smallest_radius(c);
   return c.bpm.primaries * grain_area(c) /

@@ -26,6 +26,11 @@ Case case_of_kind(Case c, int k) {
   return c;
 }
 
+Case with_bonded_kinds(Case c) {
+  std::erase_if(c.kinds, [](const Case::Kind& kind) { return kind.model == GrainModel::rigid; });
+  return c;
+}
+
 Case::Kind kind_of(const Case& c) {
   return {.name = {},
           .grains = c.sample.grains,

@@ -10,8 +10,11 @@ inline int kinds_of(const Case& c) { return c.kinds.empty() ? 1 : static_cast<in
 
 /// The case with grains of its k-th kind alone: what `grain`, `bpm`, `mpm`, `sample` and `experiment.model`
 /// say is that kind's, and the number of grains too. Of a case of one kind that case itself. Of several,
-/// elastic and rigid ones, the case's own model is that of the elastic ones.
+/// soft and rigid ones, the case's own model is that of the soft ones.
 Case case_of_kind(Case the_case, int kind);
+
+/// The case with its bonded kinds alone, where rigid ones are among them.
+Case with_bonded_kinds(Case the_case);
 
 /// What a case of one kind says of it.
 Case::Kind kind_of(const Case& the_case);

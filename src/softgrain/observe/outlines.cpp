@@ -21,6 +21,18 @@ struct Touch {
   double angle = 0;
 };
 
+/// A regular polygon of the area of a disk.
+std::vector<Vec<2>> circle_of_equal_area(const Vec<2>& centre, double radius) {
+  constexpr int corners = 64;
+  const double reach = radius * std::sqrt(two_pi / (corners * std::sin(two_pi / corners)));
+  std::vector<Vec<2>> polygon;
+  for (int k = 0; k < corners; ++k) {
+    const double angle = two_pi * k / corners;
+    polygon.push_back(centre + reach * Vec<2>{std::cos(angle), std::sin(angle)});
+  }
+  return polygon;
+}
+
 /// Disks that a probe rolls round.
 class RollingProbe {
  public:
@@ -93,6 +105,7 @@ std::vector<Vec<2>> disk_outline(std::span<const Vec<2>> position, std::span<con
                                  double probe) {
   std::vector<Vec<2>> outline;
   if (position.empty()) return outline;
+  if (position.size() == 1) return circle_of_equal_area(position[0], radius[0]);
   const RollingProbe rolling(position, radius, probe);
   // the first whole arc begins where the probe first meets another disk
   const Touch start = rolling.roll(rolling.start()).next;

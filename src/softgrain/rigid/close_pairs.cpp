@@ -1,6 +1,8 @@
 #include "softgrain/rigid/close_pairs.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <optional>
 
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/cell_grid.hpp"
@@ -18,21 +20,54 @@ struct PairList {
   }
 };
 
+/// Finds bodies that may be near others. Wide ones look round in a grid of their own.
+template <int Dim>
+class NearBodies {
+ public:
+  /// Bodies at `position`, as large as `radius` says. Those of a pair have a gap below `apart`.
+  NearBodies(std::span<const Vec<Dim>> position, std::span<const double> radius, double apart)
+      : wide_(wide_bodies(radius)) {
+    double widest = 0, widest_of_others = 0;
+    for (std::size_t k = 0; k < radius.size(); ++k) {
+      widest = std::max(widest, radius[k]);
+      if (wide_[k] == 0) widest_of_others = std::max(widest_of_others, radius[k]);
+    }
+    grid_.emplace(position, 2 * widest_of_others + apart);
+    if (widest > widest_of_others) grid_of_wide_.emplace(position, 2 * widest + apart);
+  }
+
+  /// visit(j) for others that may be near i; of a pair one alone sees the other, if `number(k)` is that of
+  /// the body whose image k is.
+  template <class Number, class Visit>
+  void for_each_partner(int i, const Number& number, const Visit& visit) const {
+    const bool wide = wide_[i] != 0;
+    (wide ? *grid_of_wide_ : *grid_).for_each_neighbour(i, [&](int j) {
+      const bool both = (wide_[j] != 0) == wide;
+      if (both ? number(j) > number(i) : wide) visit(j);
+    });
+  }
+
+ private:
+  std::vector<char> wide_;
+  std::optional<CellGrid<Dim>> grid_, grid_of_wide_;
+};
+
 /// Particles begin .. end - 1 with gap < skin at the reference positions, but not if `skipped(i, j)`.
 template <int Dim, class Skipped>
 std::vector<BodyPair> close_pairs(const RigidParticles<Dim>& particles,
                                   const std::vector<Vec<Dim>>& reference, double skin,
                                   const GrainRange& range, const Skipped& skipped) {
   const auto x = std::span(reference).subspan(range.begin, range.end - range.begin);
-  const double* radius = particles.radius.data() + range.begin;
+  const auto radius = std::span(particles.radius).subspan(range.begin, x.size());
   if (x.size() < 2) return {};
-  const CellGrid<Dim> grid(x, 2 * *std::max_element(radius, radius + x.size()) + skin);
+  const NearBodies<Dim> near(x, radius, skin);
   const auto pairs_of = [&](int i, std::vector<BodyPair>& pairs) {
-    grid.for_each_neighbour(i, [&](int j) {
-      if (j < i || skipped(range.begin + i, range.begin + j)) return;
+    near.for_each_partner(i, std::identity{}, [&](int j) {
+      if (skipped(range.begin + i, range.begin + j)) return;
       const Vec<Dim> d = x[j] - x[i];
       const double touch = radius[i] + radius[j] + skin;
-      if (dot(d, d) < touch * touch) pairs.push_back({range.begin + i, range.begin + j});
+      if (dot(d, d) < touch * touch)
+        pairs.push_back({range.begin + std::min(i, j), range.begin + std::max(i, j)});
     });
   };
   return parallel_sum<PairList>(static_cast<int>(x.size()),
@@ -52,17 +87,20 @@ std::vector<BodyPair> close_pairs_of_images(const RigidParticles<Dim>& particles
   const double apart = reference.skin + reference.reach;
   const double reach = 2 * *std::max_element(radius.begin(), radius.end()) + apart;
   const Images<Dim> images(reference.between, reference.cell, reach);
-  const CellGrid<Dim> grid(images.position, reach);
+  const auto number = [&](int at) { return images.point[at]; };
+  std::vector<double> radius_of_image;
+  for (const int i : images.point) radius_of_image.push_back(radius[i]);
+  const NearBodies<Dim> near(images.position, radius_of_image, apart);
   const auto pairs_of = [&](int i, std::vector<BodyPair>& pairs) {
-    grid.for_each_neighbour(i, [&](int at) {
-      const int j = images.point[at];
-      if (j < i || particles.grain[i] == particles.grain[j]) return;
+    near.for_each_partner(i, number, [&](int at) {
+      const int j = number(at);
+      if (particles.grain[i] == particles.grain[j]) return;
       const Vec<Dim> d = images.position[at] - images.position[i];
       const double touch = radius[i] + radius[j] + apart;
       if (dot(d, d) >= touch * touch) return;
-      BodyPair pair{i, j};
+      BodyPair pair{std::min(i, j), std::max(i, j)};
       const auto image = images.between(i, at);
-      std::copy(image.begin(), image.end(), pair.image.begin());
+      for (std::size_t k = 0; k < Dim; ++k) pair.image[k] = i < j ? image[k] : -image[k];
       pairs.push_back(pair);
     });
   };
@@ -76,6 +114,15 @@ std::vector<BodyPair> close_pairs_of_images(const RigidParticles<Dim>& particles
 }
 
 }  // namespace
+
+std::vector<char> wide_bodies(std::span<const double> radius) {
+  constexpr double ratio = 5;
+  std::vector<char> wide;
+  if (radius.empty()) return wide;
+  const double smallest = *std::min_element(radius.begin(), radius.end());
+  for (const double r : radius) wide.push_back(r > ratio * smallest ? 1 : 0);
+  return wide;
+}
 
 template <int Dim>
 std::vector<BodyPair> pairs_between(const RigidParticles<Dim>& particles,

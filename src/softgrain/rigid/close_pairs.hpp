@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <span>
 #include <vector>
 
 #include "softgrain/rigid/neighbours.hpp"
@@ -12,6 +13,10 @@ struct BodyPair {
   std::array<int, 3> image{};  // of b
   bool crosses() const { return image != std::array<int, 3>{}; }
 };
+
+/// 1 for bodies with more than five times the radius of the smallest, such as rigid grains among primaries:
+/// cells of a grid that fit the others do not fit them.
+std::vector<char> wide_bodies(std::span<const double> radius);
 
 /// Pairs of a list with gap < skin + reach at its reference: of particles of different grains, through all
 /// images, then of particles and walls.

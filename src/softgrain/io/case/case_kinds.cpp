@@ -39,8 +39,9 @@ bool is_of_shape(const std::string& key) {
   return key == "grain.shape" || key == "grain.aspect" || key == "grain.sides";
 }
 
-/// Does a kind have such a key?
-bool is_written(const Case& kind, const std::string& key) {
+/// Does a kind of the case have such a key? Rigid grains among bonded ones are disks without vertices.
+bool is_written(const Case& c, const Case& kind, const std::string& key) {
+  if (is_bonded(c) && is_rigid(kind) && (is_of_shape(key) || key == "mpm.cells")) return false;
   if (key == "grain.surface") return kind.grain.shape == ShapeOfGrain::surface;
   if (key == "grain.outline") return kind.grain.shape == ShapeOfGrain::outline;
   if (key.starts_with(is_bonded(kind) ? "mpm." : "bpm.")) return false;
@@ -55,7 +56,7 @@ void for_each_value(const Case& c, int k, const Visit& visit) {
   if (is_rigid(kind)) visit("model", "\"rigid\"");
   for (const FormKey& form : written_keys()) {
     const std::string& key = form.keys.front();
-    if (is_written(kind, key) && (c.sample.placed.empty() || !key.starts_with("sample.")))
+    if (is_written(c, kind, key) && (c.sample.placed.empty() || !key.starts_with("sample.")))
       visit(name_within(form), si_value(kind, *find_key(key)));
   }
 }

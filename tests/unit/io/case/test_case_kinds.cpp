@@ -168,7 +168,7 @@ TEST_CASE("mistakes in several kinds are told with line, column and remedy") {
   CHECK(mentions(refusal(two + pair + pair), "two [[pair]] are between 'a' and 'b'"));
   CHECK(refusal(two, {"experiment.model=bpm"}).empty());
   CHECK(mentions(refusal(two, {"experiment.loading=diametral"}), "several [[kind]] need a box"));
-  CHECK(mentions(refusal(two + "model = 'bpm'\n"), "not yet: bonded grains among others in one sample"));
+  CHECK(mentions(refusal(two + "model = 'bpm'\n"), "not yet: bonded grains among elastic ones"));
   CHECK(mentions(refusal(two, {"sample.grains=5"}), "the numbers of all [[kind]] are together 4"));
   const CaseReading vain = parse_case_with_notes(two + "law.yield_stress = 1e5\n", "case.toml");
   REQUIRE(vain.notes.size() == 1);
@@ -237,7 +237,8 @@ TEST_CASE("what rigid grains cannot do is told with a remedy") {
   CHECK(mentions(refusal(soft_and_rigid, {"kind.lead.shape=ellipse", "kind.lead.aspect=11"}),
                  "kind 'lead': grain.aspect of elastic ellipses must be at most 10"));
   CHECK(mentions(refusal(soft_and_rigid, {"kind.glass.sides=2"}), "kind.sides = 2 is out of range"));
-  CHECK(mentions(refusal(soft_and_rigid, {"kind.lead.model=bpm"}), "not yet: bonded grains among others"));
+  CHECK(mentions(refusal(soft_and_rigid, {"kind.lead.model=bpm"}),
+                 "kind 'glass': rigid grains among bonded ones come in other shapes with a later version"));
 }
 
 TEST_CASE("a run goes on with the kinds with which it began") {
