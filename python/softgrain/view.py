@@ -59,7 +59,7 @@ def faces(snapshot) -> Faces:
     """The quads of the surfaces."""
     place = snapshot.outlines["position"][snapshot.surface["quad"].astype(int)]  # (quads, 4, 3)
     normal = np.cross(place[:, 2] - place[:, 0], place[:, 3] - place[:, 1])
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)[:, None]  # a quad may have no area
     seen = project(place.reshape(-1, 3)).reshape(-1, 4, 3)
     facing = normal @ directions()[2] > 0
     order = np.flatnonzero(facing)[np.argsort(seen[facing, :, 2].mean(1))]
