@@ -38,15 +38,14 @@ FacingPatches patches_facing(const Surfaces& surfaces, int grain, int vertex, co
   const int begin = surfaces.grains.outline_begin(grain), local = vertex - begin;
   const Vec<3>* position = surfaces.first_of(grain);
   const Vec<3> d = x - position[local];
-  constexpr std::array<std::size_t, 4> around{5, 9, 10, 6};  // P_11, P_21, P_22, P_12
   FacingPatches facing;
   for (const int q : topology.quads_round[local]) {
     if (q < 0) continue;
     const auto& net = topology.patches[q].vertex;
     std::size_t k = 0;
-    while (net[around[k]] != local) ++k;
-    const Vec<3> a = position[net[around[(k + 1) % 4]]] - position[local],
-                 b = position[net[around[(k + 3) % 4]]] - position[local];
+    while (net[PatchNet::corner[k]] != local) ++k;
+    const Vec<3> a = position[net[PatchNet::corner[(k + 1) % 4]]] - position[local],
+                 b = position[net[PatchNet::corner[(k + 3) % 4]]] - position[local];
     const double aa = dot(a, a), ab = dot(a, b), bb = dot(b, b), da = dot(d, a), db = dot(d, b);
     facing.add({.patch = q,
                 .u = k == 1 || k == 2 ? 1.0 : 0.0,

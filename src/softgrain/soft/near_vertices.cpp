@@ -41,7 +41,7 @@ NearVertices::NearVertices(const Surfaces& surfaces, double reach)
 void NearVertices::find_for_middle(const PatchNet& net, int first_vertex, const Vec<3>& x,
                                    std::vector<NearestVertex>& near) const {
   near.clear();
-  for (const std::size_t corner : {5, 9, 10, 6})
+  for (const std::size_t corner : PatchNet::corner)
     for (NearestVertex n : of(first_vertex + net.vertex[corner])) {
       walk(x, n);
       add_nearest(n, near);
@@ -64,7 +64,7 @@ void NearVertices::walk(const Vec<3>& x, NearestVertex& n) const {
     from = n.vertex;
     for (const int q : shape.quads_round[from - begin]) {
       if (q < 0) continue;
-      for (const std::size_t corner : {5, 9, 10, 6}) {
+      for (const std::size_t corner : PatchNet::corner) {
         const int w = begin + shape.patches[q].vertex[corner];
         if (const double next = distance_squared(w); next < n.distance_squared)
           n.vertex = w, n.distance_squared = next;

@@ -75,15 +75,14 @@ void find_edges(const std::vector<Vec<3>>& edges, SolidTopology& shape) {
     return std::any_of(edges.begin(), edges.end(),
                        [&](const Vec<3>& place) { return norm(place - middle) < reach; });
   };
-  // corners of the patch P_11, P_21, P_22, P_12, and the side from each to the next
-  constexpr std::array<std::size_t, 4> corner{5, 9, 10, 6};
+  // from each corner of a patch to the next
   constexpr std::array<unsigned, 4> side{PatchNet::low_v, PatchNet::high_u, PatchNet::high_v,
                                          PatchNet::low_u};
   for (std::size_t q = 0; q < outline.quad.size(); ++q) {
     PatchNet& net = shape.patches[q];
     const Vec<3> here = normal_of(outline, outline.quad[q]);
     for (std::size_t k = 0; k < 4; ++k) {
-      const int a = net.vertex[corner[k]], b = net.vertex[corner[(k + 1) % 4]];
+      const int a = net.vertex[PatchNet::corner[k]], b = net.vertex[PatchNet::corner[(k + 1) % 4]];
       const Vec<3> there = normal_of(outline, outline.quad[quad_at.at({b, a})]);
       if (dot(here, there) < std::cos(least_edge) && near_an_edge(a, b)) net.sharp |= side[k];
     }

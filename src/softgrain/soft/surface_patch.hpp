@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,8 @@ namespace softgrain {
 struct PatchNet {
   /// The sides u = 0, u = 1, v = 0 and v = 1
   enum Side : unsigned { low_u = 1, high_u = 2, low_v = 4, high_v = 8 };
+  /// Where the quad's own vertices P_11, P_21, P_22, P_12 stand in the net.
+  static constexpr std::array<std::size_t, 4> corner{5, 9, 10, 6};
 
   std::array<int, 16> vertex{};     ///< P_ij at 4 i + j; with ghosts C at 0 and P_11 at 1 and 4
   bool ghosts = false;              ///< P_11 has valence 3
