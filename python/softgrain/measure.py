@@ -1,5 +1,6 @@
 """What the stress-strain curve of a grain between two walls says. Compression counts positive."""
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -8,7 +9,7 @@ from .run import NotRecorded
 
 WALL_STRESSES = ("stress_top", "stress_bottom")
 LOADING, UNLOADING, RELOADING, HOLD = "loading", "unloading", "reloading", "hold"
-HELD_STRAIN, HELD_STRESS = 0.01, 0.2  # a hold strays by less: over all strain of the run, over its mean stress
+HELD_STRAIN, HELD_STRESS = 0.01, 0.2  # a hold strays by less: over all strain of the run, over its stress
 
 
 class Branch(NamedTuple):
@@ -43,39 +44,70 @@ def vertical_stress(series):
     return np.mean(walls, axis=0)
 
 
-def held(series):
-    """Of each step from one sample to the next whether its stage only holds: strain and stress, or the strain alone."""
+def directions(series):
+    """Of each step from one sample to the next: 1 where the walls go on, -1 where they turn back, 0 where a leg only
+    holds strain and stress, or the strain alone.
+
+    Walls that keep a stress go to and fro as grains move. In a leg that does so, only ways of 1 % of the run's strain
+    count on which the stress rises, or falls, with the strain."""
     strain = series["strain"]
-    still = np.zeros(max(strain.size - 1, 0), dtype=bool)
+    direction = np.where(np.diff(strain) < 0, -1, 1)
     if "leg" not in series or not any(name in series for name in WALL_STRESSES):
-        return still
-    leg, stress = series["leg"], vertical_stress(series)
+        return direction
+    leg, stress, noise = series["leg"], vertical_stress(series), HELD_STRAIN * np.ptp(strain)
     for number in np.unique(leg):
         rows = np.flatnonzero(leg == number)
-        way, load = np.ptp(strain[rows]), stress[rows]
-        is_kept = way < HELD_STRAIN * np.ptp(strain) and np.ptp(load) < HELD_STRESS * abs(load.mean())
-        if rows.size > 1 and (way == 0 or is_kept):
-            still[max(rows[0] - 1, 0) : rows[-1]] = True
-    return still
+        first, last = max(rows[0] - 1, 0), rows[-1]
+        if rows.size > 1 and _is_held(strain[rows], stress[rows], noise):
+            direction[first:last] = 0
+        elif np.unique(direction[first:last]).size > 1:
+            direction[first:last] = 0
+            for a, b in pairwise(first + turns(strain[first : last + 1], noise)):
+                way, rise = strain[b] - strain[a], (stress[b] - stress[a]) / (max(stress[a], stress[b]) or 1)
+                if abs(way) >= noise and np.sign(way) * rise > HELD_STRESS:
+                    direction[a:b] = np.sign(way)
+    return direction
 
 
-def branches(strain, still=None):
-    """Cuts a strain history into loading (beyond every strain before), unloading and reloading branches, and holds
-    where `still` says so of a step.
+def _is_held(strain, stress, noise):
+    way = np.ptp(strain)
+    return way == 0 or (way < noise and np.ptp(stress) < HELD_STRESS * abs(stress.mean()))
+
+
+def turns(path, noise):
+    """Where a path turns for at least `noise`, from its first to its last sample (indices, increasing)."""
+    found, furthest, sign = [], 0, 0
+    for i, value in enumerate(path):
+        ahead = value - path[furthest]
+        if sign * ahead > 0:
+            furthest = i
+        elif abs(ahead) >= noise:
+            found.append(furthest)
+            sign, furthest = np.sign(ahead), i
+    return np.unique([0, *found, furthest, len(path) - 1])
+
+
+def branches(strain, direction=None):
+    """Cuts a strain history into loading (beyond every strain before), unloading and reloading branches, and holds;
+    `direction` of each step as of `directions`, by default that of the strain.
 
     Neighbouring branches share the sample where one ends and the next begins."""
     strain = np.asarray(strain)
     if strain.size < 2:
         return []
-    reached = np.maximum.accumulate(strain)[:-1]
-    going_down = np.diff(strain) < 0
-    beyond = strain[1:] > reached
-    kinds = np.where(going_down, UNLOADING, np.where(beyond, LOADING, RELOADING))
-    if still is not None:
-        kinds = np.where(still, HOLD, kinds)
-    cuts = np.flatnonzero(kinds[1:] != kinds[:-1]) + 1
-    ends = [0, *cuts, kinds.size]
-    return [Branch(str(kinds[a]), int(a), int(b)) for a, b in zip(ends, ends[1:])]
+    if direction is None:
+        direction = np.where(np.diff(strain) < 0, -1, 1)
+    reached = np.maximum.accumulate(strain)
+    found = []
+    cuts = (np.flatnonzero(np.diff(direction)) + 1).tolist()
+    for a, b in pairwise([0, *cuts, direction.size]):
+        if direction[a] <= 0:
+            found.append(Branch(UNLOADING if direction[a] < 0 else HOLD, a, b))
+            continue
+        beyond = np.flatnonzero(strain[a + 1 : b + 1] > reached[a])
+        new = a + int(beyond[0]) if beyond.size else b
+        found += [Branch(kind, i, j) for kind, i, j in ((RELOADING, a, new), (LOADING, new, b)) if i < j]
+    return found
 
 
 def is_envelope(strain):
@@ -111,11 +143,11 @@ def plateau(strain, stress, start=0.05):
     return Plateau(stress[plastic].mean(), stress[plastic].std(), (strain[plastic][0], strain[-1]))
 
 
-def unloadings(strain, stress, still=None):
-    """Each unloading, `still` as of `branches`; its slope is fitted from where the stress first falls below 80 % of that at the start
-    to where it is last above 20 %."""
+def unloadings(strain, stress, direction=None):
+    """Each unloading, `direction` as of `branches`; its slope is fitted from where the stress first falls below 80 % of
+    that at the start to where it is last above 20 %."""
     found = []
-    for branch in branches(strain, still):
+    for branch in branches(strain, direction):
         if branch.kind != UNLOADING:
             continue
         eps, sigma = strain[branch.samples], stress[branch.samples]

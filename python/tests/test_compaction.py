@@ -142,9 +142,9 @@ class Runs(unittest.TestCase):
 
     def test_a_hold_is_no_unloading(self):
         series = self.run_of_die.series
-        kinds = [branch.kind for branch in measure.branches(series["strain"], measure.held(series))]
+        kinds = [branch.kind for branch in measure.branches(series["strain"], measure.directions(series))]
         self.assertEqual(kinds[:3], [measure.LOADING, measure.HOLD, measure.UNLOADING])
-        slopes = [u.slope for u in measure.unloadings(series["strain"], measure.vertical_stress(series), measure.held(series))]
+        slopes = [u.slope for u in measure.unloadings(series["strain"], measure.vertical_stress(series), measure.directions(series))]
         self.assertEqual(len(slopes), 1)
         self.assertLess(abs(slopes[0] / (0.95 * MPA / 0.0382) - 1), 0.05)
         with plot.style():

@@ -18,6 +18,29 @@ class Curves(unittest.TestCase):
         self.assertEqual(found, expected)
         self.assertEqual(measure.branches([0.0]), [])
 
+    def test_walls_that_keep_a_stress_and_stray_do_not_unload(self):
+        rise, drive = np.linspace(0, 0.1, 50, endpoint=False), np.linspace(0.105, 0.2, 50)
+        kept = np.concatenate([np.linspace(0.1, 0.115, 10), 0.112 - 0.003 * np.cos(np.arange(60)), [0.108, 0.104]])
+        strain = np.concatenate([rise, kept, drive])
+        stress = np.concatenate([1e6 * rise, 1e5 * (1 + 0.02 * np.sin(7 * np.arange(kept.size))), 1e6 * drive])
+        leg = np.repeat([0.0, 1.0, 2.0], [rise.size, kept.size, drive.size])
+        series = {"strain": strain, "leg": leg, "stress_top": stress}
+        direction = measure.directions(series)
+        kinds = [b.kind for b in measure.branches(strain, direction)]
+        self.assertEqual(kinds, ["loading", "hold", "reloading", "loading"])
+        self.assertEqual(measure.unloadings(strain, stress, direction), [])
+
+    def test_waves_of_the_walls_unload_once_a_period(self):
+        strain = np.concatenate([np.linspace(0, 0.1, 50, endpoint=False), 0.1 + 0.01 * np.sin(np.linspace(0, 6 * np.pi, 300))])
+        leg = np.repeat([0.0, 1.0], [50, 300])
+        series = {"strain": strain, "leg": leg, "stress_top": 1e6 * np.maximum(strain - 0.08, 0)}
+        kinds = [b.kind for b in measure.branches(strain, measure.directions(series))]
+        self.assertEqual(kinds, ["loading", "unloading", "reloading", "unloading", "reloading", "unloading", "reloading"])
+
+    def test_a_path_turns_where_it_goes_back_by_more_than_its_noise(self):
+        self.assertEqual(measure.turns([0, 1, 2, 1.9, 3, 1, 1.1, 0, 0.05], 0.5).tolist(), [0, 4, 7, 8])
+        self.assertEqual(measure.turns([0, 0.1, 0], 0.5).tolist(), [0, 2])
+
     def test_the_envelope_visits_each_strain_once(self):
         strain, stress = measure.envelope([0, 1, 2, 1, 2, 3], [0, 5, 6, 0, 9, 7])
         self.assertEqual((strain.tolist(), stress.tolist()), ([0, 1, 2, 3], [0, 5, 6, 7]))

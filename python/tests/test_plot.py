@@ -210,6 +210,17 @@ class Pictures(Temporary):
         self.assertIn("0.50 MPa", words)
         self.assertIn("slope 10 MPa", words)
 
+    def test_many_unloadings_have_their_range_of_slopes_on_the_page(self):
+        path = self.write()
+        strain = np.concatenate([[0], *(np.concatenate([np.linspace(k, k + 2, 20), np.linspace(k + 2, k + 1, 10)]) for k in range(12))]) / 100
+        rows = np.column_stack([strain, synthetic.stress_path(strain)])
+        np.savetxt(path / "series.csv", rows, delimiter=",", header="strain,stress_top[Pa]", comments="")
+        with plot.style():
+            figure = plot.draw_curve([softgrain.open(path)])
+            self.assert_texts_apart(figure)
+        words = " ".join(text.get_text() for text in figure.findobj(matplotlib.text.Text))
+        self.assertIn("12 slopes 10", words)
+
     def test_the_curve_of_a_packing_has_no_plateau(self):
         packing = self.open("packing", columns=("strain", "stress_top[Pa]", "phi"))
         grain = self.open("grain", columns=("strain", "stress_top[Pa]", "something_new"))

@@ -11,6 +11,7 @@ from .style import BLUE, GREEN, GREY, INK, MM, PURPLE, RUN_COLOURS, SINGLE_COLUM
 
 HEIGHT = 62  # [mm]
 LEFT, RIGHT, BOTTOM, KEY_LINE = 12, 2.5, 9.5, 4  # margins; above, a line of the key for each curve [mm]
+MOST_SLOPES = 3  # of unloadings that the key names one by one
 BRANCH_COLOURS = {measure.UNLOADING: VERMILLION, measure.RELOADING: GREEN, measure.HOLD: PURPLE}
 
 
@@ -24,7 +25,7 @@ class Curve:
     scale: float  # 1 MPa, or sigma_I [Pa]
     characteristic_stress: float | None  # sigma_I [Pa]
     plateau: measure.Plateau | None  # of a bonded grain between walls; all other stresses rise all the way
-    still: np.ndarray | None = None  # of each step from a sample to the next whether its stage only holds
+    direction: np.ndarray | None = None  # of each step from a sample to the next, as measure.directions
     elastic_grain: bool = False  # one grain, which unloads as it was loaded and is smooth
     in_space: bool = False
 
@@ -66,7 +67,7 @@ def _curve(run, label, normalise):
     scale = sigma_i if normalise else 1e6
     strain, packing = run.series["strain"], "phi" in run.series
     flat = None if packing or run.elastic else measure.plateau(strain, stress / scale)
-    return Curve(label, strain, stress / scale, scale, sigma_i, flat, measure.held(run.series), run.elastic and not packing, run.in_space)
+    return Curve(label, strain, stress / scale, scale, sigma_i, flat, measure.directions(run.series), run.elastic and not packing, run.in_space)
 
 
 def _common_characteristic_stress(curves):
@@ -105,7 +106,7 @@ def _mark_break(below, above):
 def _draw_branches(axes, curve):
     """One run: each kind of branch in its colour; the plateau and the unloading slopes in words."""
     strain, stress = curve.strain, curve.stress
-    branches = measure.branches(strain, curve.still)
+    branches = measure.branches(strain, curve.direction)
     eps, sigma = measure.envelope(strain, stress)
     if curve.elastic_grain and _follows(strain, stress, eps, sigma):
         axes.plot(eps, sigma, color=BLUE, lw=1.3, label="loading" + (", unloading the same" if len(branches) > 1 else ""))
@@ -138,11 +139,12 @@ def _draw_plateau(axes, curve):
 
 
 def _slopes(curve):
-    """", slope 3.6 MPa" of each unloading; elastic grains unload as they were loaded."""
-    slopes = [] if curve.elastic_grain else [unloading.slope for unloading in measure.unloadings(curve.strain, curve.stress, curve.still)]
+    """", slope 3.6 MPa" of each unloading, of many their range; elastic grains unload as they were loaded."""
+    slopes = [] if curve.elastic_grain else [u.slope for u in measure.unloadings(curve.strain, curve.stress, curve.direction)]
     unit = r"$\,\sigma_I$" if curve.scale == curve.characteristic_stress else " MPa"
-    words = ", ".join(f"{slope:.{1 if slope < 10 else 0}f}" for slope in slopes)
-    return f", slope{'s' if len(slopes) > 1 else ''} {words}{unit}" if slopes else ""
+    few = len(slopes) <= MOST_SLOPES
+    words = (", " if few else " to ").join(f"{slope:.{1 if slope < 10 else 0}f}" for slope in (slopes if few else (min(slopes), max(slopes))))
+    return f", {'' if few else f'{len(slopes)} '}slope{'s' if len(slopes) > 1 else ''} {words}{unit}" if slopes else ""
 
 
 def _draw_overlay(axes, curves):

@@ -30,7 +30,7 @@ def _snapshots_of_moments(series, times):
     time = series["time"]
     sampling_interval = np.diff(time).max(initial=0)
     chosen = {0, times.size - 1}
-    for branch in measure.branches(series["strain"], measure.held(series)):
+    for branch in measure.branches(series["strain"], measure.directions(series)):
         if branch.kind == measure.UNLOADING and len(chosen) + 2 <= MOST_STAGES:
             # The series knows the moment of the reversal only to one interval.
             loaded = np.searchsorted(times, time[branch.first] + 0.5 * sampling_interval) - 1
