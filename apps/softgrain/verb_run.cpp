@@ -152,9 +152,9 @@ fs::path default_directory(const fs::path& case_file) {
 }
 
 void refuse_another_case(const RunRequest& request, const RunPaths& paths, const std::string& name) {
-  const std::string stored = read_file(paths.case_file());
-  if (stored == request.case_text) return;
-  const std::string why = why_no_extension(parse_case(stored, paths.case_file().string()), request.the_case);
+  if (request.case_before == request.case_text) return;
+  const std::string why =
+      why_no_extension(parse_case(request.case_before, paths.case_file().string()), request.the_case);
   require(
       why.empty(),
       "{} is not the case that {} was begun with: {}; `softgrain resume {}` goes on with the stored one, -o "
@@ -174,9 +174,10 @@ void run_case(const RunArguments& arguments) {
   require(arguments.resume || !fs::equivalent(source.path, paths.case_file(), no_such_file),
           "{} lies in the run's directory and would be overwritten; choose another with -o", source.path);
   const bool going_on = arguments.resume && is_begun(paths);
-  const bool has_case =
-      going_on && fs::exists(paths.case_file());  // not when the disk was full from the beginning
-  if (has_case) refuse_another_case(request, paths, source.path);
+  if (going_on && fs::exists(paths.case_file())) {  // not when the disk was full from the beginning
+    request.case_before = read_file(paths.case_file());
+    refuse_another_case(request, paths, source.path);
+  }
   check_case(request.the_case);  // before a large sample is prepared, and before there is a directory
   const bool keep = arguments.force || going_on;
   if (!keep) require_memory_and_disk(request.the_case, paths);
@@ -233,7 +234,7 @@ void resume_run(const RunOptions& options) {
           options.directory, options.directory);
   RunRequest request = request_of(options, true);
   const auto directory = RunDirectory::take(paths.root, RunDirectory::IfNotEmpty::keep);
-  request.case_text = read_file(paths.case_file());
+  request.case_text = request.case_before = read_file(paths.case_file());
   request.the_case = case_to_resume(request.case_text, paths);
   carry_out(request, *directory, options, notes_of({request.the_case, {}, {}}));
 }

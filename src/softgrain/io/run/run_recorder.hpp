@@ -22,6 +22,7 @@ namespace softgrain {
 struct RunRequest {
   Case the_case;
   std::string case_text;             ///< the resolved case, as stored
+  std::string case_before;           ///< what case.toml of a run that goes on held; empty for no such file
   std::vector<std::string> command;  ///< the command line
   std::vector<RunOrigin> origins;    ///< that the simulation was begun from, the newest first
   bool resume = false;  ///< from the newest intact snapshot; from the beginning when there is none
@@ -68,7 +69,6 @@ class RunRecorder final : public Recorder {
   void drop_old_end();
   Snapshot newest_intact_snapshot();
   void keep(AnySimulation& simulation, bool row, bool snapshot);
-  bool is_same_case() const;
   Snapshot snapshot_to_resume();
   Snapshot checked_snapshot();
   int write_end(const AnySimulation& simulation);

@@ -59,10 +59,6 @@ void RunRecorder::drop_old_end() {
   if (before.state == "done" && before.step == files.back().step) fs::remove(files.back().path);
 }
 
-bool RunRecorder::is_same_case() const {
-  return !fs::exists(paths_.case_file()) || read_file(paths_.case_file()) == request_.case_text;
-}
-
 /// On all ranks.
 Snapshot RunRecorder::snapshot_to_resume() {
   Snapshot snapshot;
@@ -73,7 +69,7 @@ Snapshot RunRecorder::snapshot_to_resume() {
 }
 
 Snapshot RunRecorder::checked_snapshot() {
-  if (!is_same_case()) drop_old_end();
+  if (!request_.case_before.empty() && request_.case_before != request_.case_text) drop_old_end();
   Snapshot snapshot = newest_intact_snapshot();
   if (snapshot.case_text != request_.case_text) {
     const Case begun = parse_case(snapshot.case_text, last_snapshot_.string());
@@ -108,8 +104,7 @@ RunReport RunRecorder::resume(AnySimulation& simulation) {
     log(fmt::format("resume at step {} from {}", snapshot.checkpoint.step, last_snapshot_.string()));
     frames_ = frames_before(snapshot.checkpoint.step, paths_);
     if (request_.the_case.output.vtk) fs::create_directories(paths_.vtk_folder());
-    if (!is_same_case() || !fs::exists(paths_.case_file()))
-      write_file(paths_.case_file(), request_.case_text);
+    if (request_.case_before != request_.case_text) write_file(paths_.case_file(), request_.case_text);
     save_scene(simulation, snapshot.scene);
     write_record(simulation);
   });

@@ -125,6 +125,16 @@ TEST_CASE("a run that was stopped anywhere and resumed is bit for bit the run th
   CHECK(run_json(parts.path())["verdict"] == run_json(whole.path())["verdict"]);
 }
 
+TEST_CASE("the case that a run goes on with is the one that was read before, whatever the file holds since") {
+  const test::TemporaryDirectory directory;
+  run_ball(directory.path(), request());
+  RunRequest again = request(true);
+  again.case_before = again.case_text;
+  std::ofstream(directory.path() / "case.toml") << "# a note of somebody else\n";
+  CHECK(run_ball(directory.path(), again).exit_code == 0);
+  CHECK(test::read_text(directory.path() / "case.toml") == "# a note of somebody else\n");
+}
+
 TEST_CASE("the state at which the load turns is kept") {
   const test::TemporaryDirectory directory;
   BouncingBall ball;
