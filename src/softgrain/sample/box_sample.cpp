@@ -111,11 +111,10 @@ void scatter(BoxSampleOf<Dim>& sample, const BoxSampleOptions& options, int star
   }
 }
 
-/// From there overlaps are pushed out. True if none is left.
+/// From the first ones overlaps are pushed out. True if none is left.
 template <int Dim>
-bool place(BoxSampleOf<Dim>& sample, const BoxSampleOptions& options, double clearance, int start,
-           int most_passes) {
-  scatter(sample, options, start);
+bool place(BoxSampleOf<Dim>& sample, const BoxSampleOptions& options, double clearance, int most_passes) {
+  scatter(sample, options, 0);
   const double tolerance = 1e-3 * clearance * least_diameter(options);
   for (int pass = 0; pass < most_passes; ++pass)
     if (push_apart(sample, clearance, greatest_diameter(options) / 2) < tolerance) return true;
@@ -126,15 +125,14 @@ bool place(BoxSampleOf<Dim>& sample, const BoxSampleOptions& options, double cle
 template <int Dim>
 bool settle(BoxSampleOf<Dim>& sample, const BoxSampleOptions& options, double clearance, int start) {
   scatter(sample, options, start);
-  return relax(sample, clearance, 0.1 * clearance * least_diameter(options));
+  return relax(sample, clearance, (Dim == 3 ? 0.1 : 0.01) * clearance * least_diameter(options));
 }
 
 /// Other places, less clearance, other diameters, until no grain overlaps; nothing if that does not come.
 template <int Dim>
 std::optional<BoxSampleOf<Dim>> search(const BoxSampleOptions& options, std::span<const double> shares,
                                        int most_starts) {
-  const int starts = std::clamp((Dim == 3 ? 1000 : 4000) / options.grains, 2, Dim == 3 ? 5 : most_starts);
-  const int passes = std::min(200 * options.grains, 5000);
+  const int starts = std::clamp((Dim == 3 ? 1000 : 12000) / options.grains, 2, Dim == 3 ? 5 : most_starts);
   const int draws = std::clamp((Dim == 3 ? 100 : 300) / options.grains, 1, Dim == 3 ? 5 : most_draws);
   for (int draw = 0; draw < draws; ++draw) {
     BoxSampleOf<Dim> sample = drawn<Dim>(options, draw);
@@ -142,9 +140,7 @@ std::optional<BoxSampleOf<Dim>> search(const BoxSampleOptions& options, std::spa
       const double clearance = share * options.clearance;
       if (!has_room(sample, clearance)) continue;
       for (int start = 1; start <= starts; ++start)
-        if (Dim == 3 ? settle(sample, options, clearance, start)
-                     : place(sample, options, clearance, start, passes))
-          return sample;
+        if (settle(sample, options, clearance, start)) return sample;
     }
   }
   return std::nullopt;
@@ -179,11 +175,12 @@ BoxSampleOf<Dim> sampled(const BoxSampleOptions& given) {
   const BoxSampleOptions options = with_kinds(given);
   check(options);
   BoxSampleOf<Dim> sample = drawn<Dim>(options, 0);
-  // in space `search` is faster
-  const int most_passes = Dim == 3 ? std::clamp(200000 / options.grains, 500, 100000) : 100000;
-  if (has_room(sample, options.clearance) && place(sample, options, options.clearance, 0, most_passes))
+  // `search` is faster: this finds the samples that it found before there was another way
+  const int most_passes =
+      std::clamp((Dim == 3 ? 200000 : 2000000) / options.grains, Dim == 3 ? 500 : 5000, 100000);
+  if (has_room(sample, options.clearance) && place(sample, options, options.clearance, most_passes))
     return sample;
-  if (auto found = search<Dim>(options, shares_tried<Dim>(), 40)) return *found;
+  if (auto found = search<Dim>(options, shares_tried<Dim>(), 120)) return *found;
   throw UsageError(fmt::format(
       "sample.packing_fraction = {}: could not place sample.grains = {} without overlap in a box of "
       "aspect {}; the largest fraction found for them is {:.2f}: use that or less{}",

@@ -45,10 +45,10 @@ struct BoxSampleOptions {
 };
 
 /// Random places without overlap: uniform at first, then pairs that overlap are pushed apart until none does.
-/// Where that finds no places it starts from others, then with a half and a quarter of the clearance, then
-/// with other diameters. The same seed gives the same bits. Raises UsageError, with the largest fraction that
-/// is found, if none of them works: few grains do not fill 0.7 of every box (two equal ones fill 0.54 of a
-/// square).
+/// Where that finds no places in some thousand passes, overlaps are relaxed (`relax`) from other places, then
+/// with a half and a quarter of the clearance, then with other diameters. The same seed gives the same bits.
+/// Raises UsageError, with the largest fraction that is found, if none of them works: few grains do not fill
+/// 0.7 of every box (two equal ones fill 0.54 of a square).
 BoxSample sample_box(const BoxSampleOptions& given);
 /// The same of spheres, turned at random.
 BoxSampleOf<3> sample_solid_box(const BoxSampleOptions& given);

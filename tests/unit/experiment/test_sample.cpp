@@ -86,6 +86,14 @@ TEST_CASE("few grains find places at a packing fraction of 0.7, whatever the see
     }
 }
 
+TEST_CASE("random grains find places up to 0.79, close to where disks of these sizes jam") {
+  for (const int grains : {100, 300}) {
+    CAPTURE(grains);
+    const BoxSample sample = sample_box({.grains = grains, .packing_fraction = 0.79, .seed = 1});
+    CHECK(misplaced_grains(sample).empty());
+  }
+}
+
 // Densest packings of equal disks in a square (Graham and Lubachevsky 1996, Specht's table): their fractions,
 // which a clearance of 0.005 R makes smaller by 1.005^2.
 TEST_CASE(
