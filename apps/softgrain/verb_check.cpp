@@ -9,11 +9,11 @@
 
 #include "softgrain/experiment/adhesion_of_case.hpp"
 #include "softgrain/experiment/advice.hpp"
-#include "softgrain/experiment/check_case.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/ranks_estimate.hpp"
 #include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/case/case_text.hpp"
+#include "softgrain/io/case/checked_case.hpp"
 #include "softgrain/io/case/scope.hpp"
 #include "softgrain/io/run/progress.hpp"
 #include "softgrain/material/any_law.hpp"
@@ -167,7 +167,7 @@ void print_advice(const Advice& advice, double newton_tolerance) {
 void check(const CheckOptions& options) {
   const CaseReading reading = read_case_with_notes(options.arguments.path, options.arguments.sets);
   const Case& the_case = reading.the_case;
-  check_case(the_case);
+  check_case(reading);
   const Estimate cost = estimate(the_case);
   const Advice advice = advise(the_case);
   if (options.json) return print_json(reading, cost, advice, options.ranks);

@@ -10,12 +10,12 @@
 #include "softgrain/core/communicator.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
-#include "softgrain/experiment/check_case.hpp"
 #include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/io/case/case_extension.hpp"
 #include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/case/case_text.hpp"
+#include "softgrain/io/case/checked_case.hpp"
 #include "softgrain/io/case/units.hpp"
 #include "softgrain/io/page/report_page.hpp"
 #include "softgrain/io/run/resources.hpp"
@@ -178,7 +178,7 @@ void run_case(const RunArguments& arguments) {
     request.case_before = read_file(paths.case_file());
     refuse_another_case(request, paths, source.path);
   }
-  check_case(request.the_case);  // before a large sample is prepared, and before there is a directory
+  check_case(reading);  // before a large sample is prepared, and before there is a directory
   const bool keep = arguments.force || going_on;
   if (!keep) require_memory_and_disk(request.the_case, paths);
   const auto directory = RunDirectory::take(
@@ -204,7 +204,7 @@ void run_from(const RunArguments& arguments) {
   request.the_case = reading.the_case;
   request.case_text = resolved_case_text(request.the_case);
   request.origins = origin.origins;
-  check_case(request.the_case);
+  check_case(reading);
   const fs::path beside = own.empty() ? directory_beside(origin.paths.root) : default_directory(own);
   const RunPaths paths{arguments.options.directory.empty() ? beside : fs::path(arguments.options.directory)};
   if (!arguments.force) require_memory_and_disk(request.the_case, paths);

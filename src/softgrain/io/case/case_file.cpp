@@ -57,7 +57,7 @@ class CaseReader {
     } catch (const TooManyIssues&) {
     }
     if (!draft_.issues.empty()) throw CaseFileError(report(draft_.issues, sources_, sets_));
-    return {draft_.the_case, without_effect(), draft_.notes};
+    return {draft_.the_case, without_effect(), draft_.notes, draft_.origins, sources_, sets_};
   }
 
  private:

@@ -1,10 +1,12 @@
 #pragma once
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/case.hpp"
+#include "softgrain/io/case/case_issues.hpp"
 
 namespace softgrain {
 
@@ -25,7 +27,10 @@ struct CaseReading {
   /// Full names of the keys that do nothing in this case although they were given: by an override, or in the
   /// file with another value than the default; in the order of the schema.
   std::vector<std::string> without_effect;
-  std::vector<std::string> notes{};  ///< on old spellings: what to write now
+  std::vector<std::string> notes{};         ///< on old spellings: what to write now
+  std::map<std::string, Origin> origins{};  ///< where keys were given, by full name
+  std::vector<Source> sources{};            ///< the files that were read
+  std::vector<std::string> sets{};          ///< the overrides
 };
 CaseReading read_case_with_notes(const std::string& path, const std::vector<std::string>& sets = {});
 

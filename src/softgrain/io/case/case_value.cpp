@@ -75,6 +75,11 @@ double read_number(const Key& key, const TomlValue& value) {
 template <class Integer>
 Integer read_integer(const Key& key, const TomlValue& value) {
   const auto* i = std::get_if<std::int64_t>(&value.content);
+  const auto* text = std::get_if<std::string>(&value.content);
+  const bool is_long = text != nullptr && text->size() > 18 &&  // beyond the whole numbers of TOML
+                       text->find_first_not_of("0123456789") == std::string::npos;
+  require(!is_long, "{} = {} is out of range: it must be at most {}", key.name, text->c_str(),
+          std::numeric_limits<Integer>::max());
   if (i == nullptr) wrong_type(key, value);
   check_range(key, static_cast<double>(*i), value);
   require(*i >= std::numeric_limits<Integer>::min() && *i <= std::numeric_limits<Integer>::max(),

@@ -72,6 +72,10 @@ std::vector<std::string> texts_of(const TomlValue& value) {
   return texts;
 }
 
+std::string takes_a_text(const FormKey& form) {
+  return fmt::format("{} takes a text in quotes, which is not empty", form.name);
+}
+
 }  // namespace
 
 std::string not_yet(const std::string& name) {
@@ -151,8 +155,7 @@ void FormReader::give(const FormKey& form, const TomlValue& value, Origin origin
       draft_.add(origin,
                  fmt::format("{} = {}: there is only one [[kind]], which has all grains", form.name, *share));
   } else if (text == nullptr || text->empty()) {
-    draft_.add(value.at.line > 0 ? Origin{.set = origin.set, .at = value.at} : origin,
-               fmt::format("{} takes a text", form.name));
+    draft_.add(value.at.line > 0 ? Origin{.set = origin.set, .at = value.at} : origin, takes_a_text(form));
   } else if (form.name == "kind.name") {
     kind_name_ = *text;
     if (*text == "wall") draft_.add(origin, "kind.name \"wall\" is taken: [[pair]] calls the walls so");
@@ -215,7 +218,7 @@ StageText FormReader::read_stage(const TomlValue::Table& table, Origin at) {
     } else if (const std::string text = word_in(value); !text.empty()) {
       stage.words[form.name] = {text, origin};
     } else {
-      draft_.add(origin, fmt::format("{} takes a text", form.name));
+      draft_.add(origin, takes_a_text(form));
     }
   });
   return stage;
