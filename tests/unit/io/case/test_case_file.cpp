@@ -87,8 +87,9 @@ TEST_CASE("unknown keys and tables come with the nearest that exists") {
 TEST_CASE("a value of the wrong type is refused, with what the key takes") {
   CHECK(mentions(refusal("bpm.primaries = 1.5"), "bpm.primaries takes a whole number, as in 1750; got 1.5"));
   CHECK(mentions(refusal("bpm.primaries = \"300\""), "takes a whole number"));
-  CHECK(mentions(refusal("", {"sample.seed=99999999999999999999"}),
-                 "sample.seed = 99999999999999999999 is out of range: it must be at most 9223372036854775807"));
+  CHECK(
+      mentions(refusal("", {"sample.seed=99999999999999999999"}),
+               "sample.seed = 99999999999999999999 is out of range: it must be at most 9223372036854775807"));
   CHECK(mentions(refusal("sample.file = ''"), "sample.file takes a text in quotes, which is not empty"));
   CHECK(mentions(refusal("grain.radius = true"), "grain.radius takes a length, as in \"5 mm\"; got true"));
   CHECK(mentions(refusal("output.vtk = 1"), "output.vtk takes true or false"));
