@@ -25,6 +25,10 @@ inline void store_lanes(Lanes lanes, PaddedVec& v) {
   std::memcpy(static_cast<void*>(&v), &lanes, sizeof lanes);
 }
 
+/// x, y, z and 0, of a vector that has no place for the 0.
+inline Lanes load_lanes(const Vec<3>& v) { return Lanes{v[0], v[1], v[2], 0}; }
+inline Vec<3> first_three(Lanes lanes) { return {lanes[0], lanes[1], lanes[2]}; }
+
 /// A vector where many are read and written in no order.
 template <int Dim>
 using ScatteredVec = std::conditional_t<Dim == 3, PaddedVec, Vec<Dim>>;

@@ -118,14 +118,13 @@ std::array<double, 16> patch_weights(const PatchNet& net, double u, double v) {
 }
 
 SurfacePatch::SurfacePatch(const PatchNet& net, const Vec<3>* position) {
-  for (std::size_t k = 0; k < 16; ++k) net_[k] = position[net.vertex[k]];
+  for (std::size_t k = 0; k < 16; ++k) net_[k] = load_lanes(position[net.vertex[k]]);
   if (net.ghosts) put_ghosts();
   if (net.sharp != 0) go_straight_on(net);
 }
 
 void SurfacePatch::put_ghosts() {
-  const Vec<3> C = net_[slot(0, 0)], &P_11 = net_[slot(1, 1)], &P_21 = net_[slot(2, 1)],
-               &P_12 = net_[slot(1, 2)];
+  const Lanes C = net_[slot(0, 0)], P_11 = net_[slot(1, 1)], P_21 = net_[slot(2, 1)], P_12 = net_[slot(1, 2)];
   net_[slot(0, 1)] = 0.75 * (P_12 + C) - 0.5 * P_11;
   net_[slot(1, 0)] = 0.75 * (P_21 + C) - 0.5 * P_11;
   net_[slot(0, 0)] = net_[slot(0, 1)] + net_[slot(1, 0)] - P_21 - P_12 + net_[slot(2, 2)];
@@ -154,18 +153,18 @@ Vec<3> SurfacePatch::Point::normal() const {
 
 SurfacePatch::Point SurfacePatch::at(double u, double v) const {
   const auto w_u = curve_weights(u), w_v = curve_weights(v), s_u = curve_slopes(u), s_v = curve_slopes(v);
-  Point point;
+  Lanes place{}, along_u{}, along_v{};
   for (std::size_t i = 0; i < 4; ++i) {
-    Vec<3> row, slope;
+    Lanes row{}, slope{};
     for (std::size_t j = 0; j < 4; ++j) {
       row += w_v[j] * net_[slot(i, j)];
       slope += s_v[j] * net_[slot(i, j)];
     }
-    point.place += w_u[i] * row;
-    point.along_u += s_u[i] * row;
-    point.along_v += w_u[i] * slope;
+    place += w_u[i] * row;
+    along_u += s_u[i] * row;
+    along_v += w_u[i] * slope;
   }
-  return point;
+  return {first_three(place), first_three(along_u), first_three(along_v)};
 }
 
 /// Newton's method without the curvature, of which the gap takes a share of some per cent: as fast near the

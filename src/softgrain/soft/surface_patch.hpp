@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "softgrain/math/vec.hpp"
+#include "softgrain/math/padded_vec.hpp"
 #include "softgrain/observe/surface_measure.hpp"
 
 namespace softgrain {
@@ -62,7 +62,7 @@ class SurfacePatch {
   void put_ghosts();
   void go_straight_on(const PatchNet& net);
 
-  std::array<Vec<3>, 16> net_;
+  std::array<Lanes, 16> net_;
 };
 
 /// Volume and area of a closed outline in its present shape, by 3 x 3 Gauss points of each patch:
