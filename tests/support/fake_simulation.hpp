@@ -24,7 +24,7 @@ class FakeModel : public Model {
   Outlines outlines() const override { return {}; }
   std::pair<double, double> extent(int /*axis*/) const override { return {0, 1}; }
   Energies energies() const override { return {}; }
-  Numbers numbers(const Box<2>&) const override { return {}; }
+  Numbers numbers(const Box<2>&, const Energies&) const override { return {}; }
   Scene scene(const Box<2>&) const override { return {}; }
   std::pair<double, double> reach() const override { return {-1, 1}; }
   std::vector<GrainView> grains() const override { return {}; }

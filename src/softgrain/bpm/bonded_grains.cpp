@@ -222,7 +222,7 @@ int BondedGrainsOf<Dim>::clusters() const {
 }
 
 template <int Dim>
-Numbers BondedGrainsOf<Dim>::numbers(const Box<Dim>& box) const {
+Numbers BondedGrainsOf<Dim>::numbers(const Box<Dim>& box, const Energies&) const {
   const auto& particles = dynamics_.particles;
   int contacts = 0, inner = 0;
   for (int c = 0; c < dynamics_.contacts.size(); ++c) {

@@ -73,7 +73,7 @@ class BondedGrainsOf final : public ModelOf<Dim> {
   OutlinesOf<Dim> outlines() const override { return outlines_of(dynamics_); }
   std::pair<double, double> extent(int axis) const override;
   Energies energies() const override;
-  Numbers numbers(const Box<Dim>& box) const override;
+  Numbers numbers(const Box<Dim>& box, const Energies& energies) const override;
   Scene scene(const Box<Dim>& box) const override;
   std::pair<double, double> reach() const override;
   std::vector<GrainView> grains() const override;

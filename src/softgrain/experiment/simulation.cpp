@@ -121,8 +121,9 @@ Observation SimulationOf<Dim>::observe() const {
                   .shear = {},
                   .packing = {},
                   .energies = energies(),
-                  .numbers = model_->numbers(box_),
+                  .numbers = {},
                   .means = {}};
+  now.numbers = model_->numbers(box_, now.energies);
   for (double& force : now.wall_force) force /= row_.duration > 0 ? row_.duration : dt_;
   if (box_.cell.any()) now.shear = box_.shear;
   now.dimension = Dim;

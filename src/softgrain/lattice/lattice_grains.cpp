@@ -125,8 +125,8 @@ Energies LatticeGrains::energies() const {
   return energies_of(dynamics_.work, kinetic, dynamics_.elastic_energy());
 }
 
-Numbers LatticeGrains::numbers(const Box<2>&) const {
-  Numbers numbers = elastic_numbers(dynamics_.work, dynamics_.elastic_energy());
+Numbers LatticeGrains::numbers(const Box<2>&, const Energies& energies) const {
+  Numbers numbers = elastic_numbers(dynamics_.work, energies.stored);
   double least_J = std::numeric_limits<double>::infinity(), area = 0;
   for (const PointGrain& grain : dynamics_.grains) {
     area += grain.area();

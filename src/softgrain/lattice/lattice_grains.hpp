@@ -29,7 +29,7 @@ class LatticeGrains final : public Model {
   Outlines outlines() const override;
   std::pair<double, double> extent(int axis) const override;
   Energies energies() const override;
-  Numbers numbers(const Box<2>& box) const override;
+  Numbers numbers(const Box<2>& box, const Energies& energies) const override;
   Scene scene(const Box<2>& box) const override;
   std::pair<double, double> reach() const override;
   std::vector<GrainView> grains() const override;

@@ -128,8 +128,8 @@ class ModelOf {
   /// Least and largest coordinate of the grains along an axis [m].
   virtual std::pair<double, double> extent(int axis) const = 0;
   virtual Energies energies() const = 0;
-  /// What only this model knows, by the names of its columns.
-  virtual Numbers numbers(const Box<Dim>& box) const = 0;
+  /// What only this model knows, by the names of its columns; energies: what energies() says now.
+  virtual Numbers numbers(const Box<Dim>& box, const Energies& energies) const = 0;
   /// Points, contacts and outlines; of walls without sides the x from which to which they are drawn.
   virtual Scene scene(const Box<Dim>& box) const = 0;
   virtual std::pair<double, double> reach() const = 0;

@@ -123,9 +123,9 @@ Energies ElasticGrains<Dynamics>::energies() const {
 }
 
 template <class Dynamics>
-Numbers ElasticGrains<Dynamics>::numbers(const Box<Dim>& box) const {
+Numbers ElasticGrains<Dynamics>::numbers(const Box<Dim>& box, const Energies& energies) const {
   const GrainsOf<Dim>& grains = dynamics_.grains;
-  Numbers numbers = elastic_numbers(dynamics_.work, stored_energy(grains));
+  Numbers numbers = elastic_numbers(dynamics_.work, energies.stored);
   const std::vector<Vec<Dim>>& impulse = dynamics_.impulse;
   const auto contacts =
       std::count_if(impulse.begin(), impulse.end(), [](const Vec<Dim>& p) { return p[0] > 0; });

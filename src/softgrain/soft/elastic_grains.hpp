@@ -41,7 +41,7 @@ class ElasticGrains final : public ModelOf<Dynamics::dimension> {
   OutlinesOf<Dim> outlines() const override { return outlines_of(dynamics_.grains); }
   std::pair<double, double> extent(int axis) const override;
   Energies energies() const override;
-  Numbers numbers(const Box<Dim>& box) const override;
+  Numbers numbers(const Box<Dim>& box, const Energies& energies) const override;
   Scene scene(const Box<Dim>&) const override { return soft_scene(view()); }
   std::pair<double, double> reach() const override;
   std::vector<GrainView> grains() const override { return grain_views(dynamics_.grains); }

@@ -50,7 +50,7 @@ class NoGrains final : public ModelOf<3> {
   std::vector<SurfaceMeasure> outlines() const override { return {}; }
   std::pair<double, double> extent(int /*axis*/) const override { return {0, 1}; }
   Energies energies() const override { return {}; }
-  Numbers numbers(const Box<3>&) const override { return {}; }
+  Numbers numbers(const Box<3>&, const Energies&) const override { return {}; }
   Scene scene(const Box<3>&) const override { return {}; }
   std::pair<double, double> reach() const override { return {0, 1}; }
   std::vector<GrainView> grains() const override { return {}; }
