@@ -111,7 +111,7 @@ PlacedModelOf<3> solid_grains_of(const Case& c) {
                     : grains.fastest_wave() > 0
                         ? step_share * longest_stable_step(grains, solid_damping_share)
                         : implicit_time_step(c, smallest);
-  const SolverOptions solver{.max_sweeps = 200, .tolerance = solid_tolerance, .relaxation = 1.4};
+  const SolverOptions solver{.max_sweeps = 200, .tolerance = solid_tolerance, .extrapolated = true};
   const ExplicitOptionsOf<3> options{.damping_share = solid_damping_share,
                                      .solver = solver,
                                      .friction = c.contact.friction,

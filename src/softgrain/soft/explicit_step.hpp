@@ -21,8 +21,9 @@ template <int Dim>
 struct ExplicitOptionsOf {
   /// beta: internal forces are taken at x + beta dt v, which damps the mesh's own vibrations
   double damping_share = 0;
+  /// NLGS; in units of mean radius / dt. In space sweeps start ahead of the last (docs/decisions/0077).
   SolverOptions solver{
-      .max_sweeps = 200, .tolerance = 4.5e-6, .relaxation = 1.4};  ///< NLGS; in units of mean radius / dt
+      .max_sweeps = 200, .tolerance = 4.5e-6, .relaxation = Dim == 3 ? 1.0 : 1.4, .extrapolated = Dim == 3};
   double friction = 0;
   double wall_friction = 0;
   std::vector<PairFriction> pair_friction{};  ///< of pairs of kinds, instead of those two

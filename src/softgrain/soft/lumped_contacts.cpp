@@ -21,10 +21,12 @@ LumpedSystem<Dim>::LumpedSystem(std::span<const ContactOf<Dim>> contacts, const 
                                 std::span<ScatteredVec<Dim>> velocity, std::span<const double> inverse_mass,
                                 LumpedBodiesOf<Dim>& bodies, Scratch& scratch, bool shared)
     : contacts_(contacts),
+      scratch_(scratch),
       rows_(scratch.rows),
       strips_(scratch.strips),
       velocity_(velocity),
       inverse_mass_(inverse_mass),
+      bodies_(bodies),
       of_bodies_(contacts, outline, velocity, inverse_mass, bodies) {
   strips_.template sort<Dim>(contacts, outline);
   rows_.resize(contacts.size());
@@ -112,6 +114,22 @@ Violation LumpedSystem<Dim>::sweep(std::span<Vec<Dim>> impulse, std::span<const 
       nlgs_update<Dim>(*this, c, impulse[c], friction[c], options.relaxation, violation);
   if (pushed_) pushed_->template sweep<Dim>(*this, impulse, friction, options.relaxation, violation);
   return violation;
+}
+
+template <int Dim>
+void LumpedSystem<Dim>::extrapolate(double b) {
+  auto& velocity = scratch_.velocity_before;
+  auto& body = scratch_.body_before;
+  velocity.resize(velocity_.size());
+  parallel_ranges(static_cast<int>(velocity.size()), [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) softgrain::extrapolate(velocity_[v], velocity[v], b);
+  });
+  body.resize(bodies_.body.size());
+  for (std::size_t k = 0; k < body.size(); ++k) {
+    softgrain::extrapolate(bodies_.body[k].velocity, body[k].velocity, b);
+    softgrain::extrapolate(bodies_.body[k].spin, body[k].spin, b);
+  }
+  if (pushed_) pushed_->extrapolate(b);
 }
 
 template class LumpedSystem<2>;

@@ -49,6 +49,8 @@ class LumpedSystem {
   ///   p_n = max(0, p_n - u_n/W),  p_t = p_t - u_t/W, cut to |p_t| <= mu p_n.
   Violation sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
                   const SolverOptions& options);
+  /// Velocities go ahead as impulses do (Extrapolation).
+  void extrapolate(double b);
   /// Sweeps then move these bodies too. Keeps a reference.
   void push(PushedBodies& bodies) { pushed_ = &bodies; }
   /// On all ranks: the velocities and these impulses, from the ranks that have them.
@@ -72,12 +74,14 @@ class LumpedSystem {
   void for_each_vertex(int strip, const Visit& visit) const;
 
   std::span<const ContactOf<Dim>> contacts_;
+  Scratch& scratch_;
   std::vector<Row>& rows_;  // strip by strip; of this rank's
   ContactStrips& strips_;
   SharedRow row_of_strips_;
   std::vector<std::vector<int>> at_seam_;  // vertices that the strips of a seam share
   std::span<ScatteredVec<Dim>> velocity_;
   std::span<const double> inverse_mass_;
+  LumpedBodiesOf<Dim>& bodies_;
   BodyContacts<Dim> of_bodies_;
   PushedBodies* pushed_ = nullptr;
 };
@@ -89,6 +93,8 @@ template <int Dim>
 struct LumpedSystem<Dim>::Scratch {
   std::vector<Row> rows;
   ContactStrips strips;
+  std::vector<ScatteredVec<Dim>> velocity_before;  ///< of extrapolate
+  std::vector<LumpedBodyOf<Dim>> body_before;
 };
 
 }  // namespace softgrain
