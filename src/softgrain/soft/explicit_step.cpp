@@ -54,8 +54,8 @@ ExplicitStep<Dim>::ExplicitStep(GrainsOf<Dim> soft_grains, Box<Dim> box_of_grain
                                    grains.radius(g) * grains.radius(g) * (Dim == 3 ? grains.radius(g) : 1)));
   }
   outline_velocity_.resize(grains.outline_size());
-  for (std::vector<Vec<Dim>>* of_vertices : {&outline_velocity_start_, &outline_.start, &outline_.position})
-    of_vertices->resize(grains.outline_size());
+  outline_velocity_start_.resize(grains.outline_size());
+  for (auto* of_vertices : {&outline_.start, &outline_.position}) of_vertices->resize(grains.outline_size());
   if (!bodies_.body.empty())
     for (int v = 0; v < grains.outline_size(); ++v)
       bodies_.of_vertex.push_back(body_of_grain_[grains.grain_of_vertex(v)]);

@@ -36,7 +36,7 @@ class FacingPatches {
 FacingPatches patches_facing(const Surfaces& surfaces, int grain, int vertex, const Vec<3>& x) {
   const SolidTopology& topology = surfaces.grains.topology(grain);
   const int begin = surfaces.grains.outline_begin(grain), local = vertex - begin;
-  const Vec<3>* position = surfaces.first_of(grain);
+  const PaddedVec* position = surfaces.first_of(grain);
   const Vec<3> d = x - position[local];
   FacingPatches facing;
   for (const int q : topology.quads_round[local]) {

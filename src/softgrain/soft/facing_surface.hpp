@@ -16,14 +16,14 @@ struct Surfaces {
       const auto& patches = grains.topology(g).patches;
       const int vertices = grains.outline_end(g) - grains.outline_begin(g);
       segment += std::sqrt(4 * std::numbers::pi / vertices) * grains.radius(g) / grains.size();
-      const Vec<3>* x = first_of(g);
+      const PaddedVec* x = first_of(g);
       for (const PatchNet& net : patches) {  // half of the longer diagonal of the quad
         const auto corner = [&](std::size_t k) { return x[net.vertex[k]]; };
         reach = std::max({reach, norm(corner(10) - corner(5)) / 2, norm(corner(6) - corner(9)) / 2});
       }
     }
   }
-  const Vec<3>* first_of(int grain) const { return &state.position[grains.outline_begin(grain)]; }
+  const PaddedVec* first_of(int grain) const { return &state.position[grains.outline_begin(grain)]; }
   SurfacePatch patch(int grain, int index) const {
     return {grains.topology(grain).patches[index], first_of(grain)};
   }

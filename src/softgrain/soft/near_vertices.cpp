@@ -29,7 +29,9 @@ bool is_of_surface(const SolidGrains& grains, int v) {
 }
 
 NearVertices::NearVertices(const Surfaces& surfaces, double reach)
-    : surfaces_(surfaces), grid_(surfaces.state.position, surfaces.state.cell, reach) {
+    : surfaces_(surfaces),
+      place_(surfaces.state.position.begin(), surfaces.state.position.end()),
+      grid_(place_, surfaces.state.cell, reach) {
   const int vertices = surfaces.grains.outline_size();
   append_in_parallel(vertices, points_at_once, near_,
                      [&](int v, std::vector<NearestVertex>& list) { find(reach, v, list); });

@@ -33,6 +33,7 @@ class NearVertices {
   void find(double reach, int v, std::vector<NearestVertex>& all) const;
 
   const Surfaces& surfaces_;
+  std::vector<Vec<3>> place_;  // of the vertices
   ImagedGrid grid_;
   std::vector<NearestVertex> near_;
   std::vector<int> begin_;  // (vertices + 1) where in near_ those of each begin

@@ -3,16 +3,16 @@
 
 #include "softgrain/geometry/periodic_cell.hpp"
 #include "softgrain/geometry/wall.hpp"
-#include "softgrain/math/vec.hpp"
+#include "softgrain/math/padded_vec.hpp"
 
 namespace softgrain {
 
 /// Where the outlines are, and where they were at the start of the step.
 template <int Dim>
 struct OutlineStateOf {
-  std::vector<Vec<Dim>> position, start;  ///< (outline vertices) [m]
-  std::vector<Wall<Dim>> walls;           ///< with their points at the end of the step
-  double dt = 0;                          ///< [s]
+  std::vector<ScatteredVec<Dim>> position, start;  ///< (outline vertices) [m]
+  std::vector<Wall<Dim>> walls;                    ///< with their points at the end of the step
+  double dt = 0;                                   ///< [s]
   /// Share of the step at which pairs take place and normal: half-way contact gives no energy; 1 where the
   /// step is quasi-static and its end must be an equilibrium (docs/decisions/0026).
   double normals_at = 0.5;

@@ -160,13 +160,6 @@ std::array<int, 2> SoftGrains::beside(int vertex) const {
 }
 
 template <int Dim>
-void GrainsOf<Dim>::gather_outline(std::vector<Vec<Dim>>& position) const {
-  position.resize(outline_size());
-  for (const Batch& batch : batches)
-    for_each_vertex(batch, [&](int v, int i, int lane) { position[v] = lane_of(batch.position[i], lane); });
-}
-
-template <int Dim>
 void GrainsOf<Dim>::scatter_outline(std::span<const Vec<Dim>> value, const Batch& batch,
                                     WidePlaces<Dim>& nodes) const {
   for_each_vertex(batch, [&](int v, int i, int lane) {

@@ -151,7 +151,12 @@ class GrainsOf {
         visit(v, i, lane);
   }
   /// x of all outline vertices [m], from the batches.
-  void gather_outline(std::vector<Vec<Dim>>& position) const;
+  template <class Place>
+  void gather_outline(std::vector<Place>& position) const {
+    position.resize(outline_size());
+    for (const Batch& batch : batches)
+      for_each_vertex(batch, [&](int v, int i, int lane) { position[v] = lane_of(batch.position[i], lane); });
+  }
   /// Values of vertices (force, increment) added to the nodes of a batch.
   void scatter_outline(std::span<const Vec<Dim>> value, const Batch& batch, WidePlaces<Dim>& nodes) const;
 

@@ -100,7 +100,7 @@ constexpr std::size_t masters = 16, bodies_of_contact = 3 + masters;
 
 std::vector<ContactPointOf<3>> contact_points(const SoftViewOf<3>& view) {
   const SolidGrains& grains = view.grains;
-  std::vector<Vec<3>> x;
+  std::vector<PaddedVec> x;
   grains.gather_outline(x);
   std::vector<ContactPointOf<3>> points;
   for (std::size_t c = 0; c < view.contacts.size(); ++c) {

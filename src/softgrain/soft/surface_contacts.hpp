@@ -79,7 +79,7 @@ class SurfaceNeighbours {
 };
 
 /// Where the point of a contact is, of outlines at x [m].
-Vec<3> place_of(const SurfaceContact& contact, std::span<const Vec<3>> x);
+Vec<3> place_of(const SurfaceContact& contact, std::span<const PaddedVec> x);
 
 /// Sum of the radii of the rigid spheres that take part in a contact [m].
 double offset_of(const SurfaceContact& contact, const SolidGrains& grains);

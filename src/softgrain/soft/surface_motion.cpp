@@ -6,18 +6,18 @@
 
 namespace softgrain {
 
-Vec<3> place_of(const SurfaceContact& contact, std::span<const Vec<3>> x) {
+Vec<3> place_of(const SurfaceContact& contact, std::span<const PaddedVec> x) {
   if (contact.own == nullptr) return x[contact.vertex];
-  Vec<3> place;
-  contact.for_each_own_vertex([&](int v, double weight) { place += weight * x[v]; });
-  return place;
+  Lanes place{};
+  contact.for_each_own_vertex([&](int v, double weight) { place += weight * load_lanes(x[v]); });
+  return first_three(place);
 }
 
 double gap_now(const SurfaceContact& contact, const OutlineStateOf<3>& state) {
-  Vec<3> apart = Vec<3>{} - contact.image;
-  if (contact.wall >= 0) apart -= state.walls[contact.wall].point;
-  contact.for_each_vertex([&](int v, double weight) { apart += weight * state.position[v]; });
-  return dot(apart, contact.normal) - contact.offset;
+  Lanes apart = Lanes{} - load_lanes(contact.image);
+  if (contact.wall >= 0) apart -= load_lanes(state.walls[contact.wall].point);
+  contact.for_each_vertex([&](int v, double weight) { apart += weight * load_lanes(state.position[v]); });
+  return dot(first_three(apart), contact.normal) - contact.offset;
 }
 
 double offset_of(const SurfaceContact& contact, const SolidGrains& grains) {
@@ -37,10 +37,12 @@ void update_gap(SurfaceContact& contact, const OutlineStateOf<3>& state) {
 }
 
 Vec<3> relative_displacement(const SurfaceContact& contact, const OutlineStateOf<3>& state) {
-  Vec<3> displacement = Vec<3>{} - contact.image_motion;
-  if (contact.wall >= 0) displacement -= state.dt * state.walls[contact.wall].velocity;
-  contact.for_each_vertex(
-      [&](int v, double weight) { displacement += weight * (state.position[v] - state.start[v]); });
+  Lanes sum = Lanes{} - load_lanes(contact.image_motion);
+  if (contact.wall >= 0) sum -= load_lanes(state.dt * state.walls[contact.wall].velocity);
+  contact.for_each_vertex([&](int v, double weight) {
+    sum += weight * (load_lanes(state.position[v]) - load_lanes(state.start[v]));
+  });
+  Vec<3> displacement = first_three(sum);
   if (contact.offset > 0) {  // omega x (-R n) of either side
     displacement -= cross(state.rolled[contact.vertex], contact.normal);
     if (contact.wall < 0) displacement -= cross(state.rolled[contact.master[5]], contact.normal);

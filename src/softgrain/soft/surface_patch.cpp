@@ -117,12 +117,6 @@ std::array<double, 16> patch_weights(const PatchNet& net, double u, double v) {
   return weights;
 }
 
-SurfacePatch::SurfacePatch(const PatchNet& net, const Vec<3>* position) {
-  for (std::size_t k = 0; k < 16; ++k) net_[k] = load_lanes(position[net.vertex[k]]);
-  if (net.ghosts) put_ghosts();
-  if (net.sharp != 0) go_straight_on(net);
-}
-
 void SurfacePatch::put_ghosts() {
   const Lanes C = net_[slot(0, 0)], P_11 = net_[slot(1, 1)], P_21 = net_[slot(2, 1)], P_12 = net_[slot(1, 2)];
   net_[slot(0, 1)] = 0.75 * (P_12 + C) - 0.5 * P_11;

@@ -42,7 +42,12 @@ std::array<double, 16> patch_weights(const PatchNet& net, double u, double v);
 class SurfacePatch {
  public:
   /// position: from the grain's first outline vertex on [m].
-  SurfacePatch(const PatchNet& net, const Vec<3>* position);
+  template <class Place>
+  SurfacePatch(const PatchNet& net, const Place* position) {
+    for (std::size_t k = 0; k < 16; ++k) net_[k] = load_lanes(position[net.vertex[k]]);
+    if (net.ghosts) put_ghosts();
+    if (net.sharp != 0) go_straight_on(net);
+  }
 
   /// c, dc/du and dc/dv [m].
   struct Point {
