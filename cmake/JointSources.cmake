@@ -1,5 +1,6 @@
-# softgrain_join(TARGET LINES SOURCE...): the sources are compiled in joints of at most LINES lines
-# (tools/joint_sources.py), which halves the time of a build from nothing. Without Python each is compiled by itself.
+# softgrain_join(TARGET LINES SOURCE... [-- SOURCE...]): the sources are compiled in joints of at most LINES lines
+# (tools/joint_sources.py), those before -- never with those behind it. Halves the time of a build from nothing. Without
+# Python each is compiled by itself.
 function(softgrain_join target lines)
   if(NOT EXISTS "${Python_EXECUTABLE}")
     return()

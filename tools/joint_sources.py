@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Which sources can be compiled as one: most of the time of a compiler goes into headers, anew for every source.
 
-    tools/joint_sources.py LINES SOURCE...    prints "NUMBER SOURCE" for each: sources of one number make one joint source
+    tools/joint_sources.py LINES SOURCE... [-- SOURCE...]    prints "NUMBER SOURCE" for each: those of one number are one joint
 
-A joint source has at most LINES lines. Sources with a name in common in their anonymous namespaces, or that make functions
+A joint source has at most LINES lines. -- keeps the sources before it from those behind it. Sources with a name in common in their anonymous namespaces, or that make functions
 of one template, are not joined; nor is one whose hidden name stands in a header of src/, or of tests/, that another one of
 that folder includes.
 """
@@ -75,5 +75,7 @@ def joints(sources, longest):
 
 
 if __name__ == "__main__":
-    for number, joint in enumerate(joints(sys.argv[2:], int(sys.argv[1]))):
+    lists = ("\n".join(sys.argv[2:]) + "\n").split("--\n")
+    made = [joint for sources in lists for joint in joints(sources.splitlines(), int(sys.argv[1]))]
+    for number, joint in enumerate(made):
         print("\n".join(f"{number} {source}" for source in joint))
