@@ -10,6 +10,11 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/io/format/file.hpp"
 
+// The visitor of H5O_info_t, which has another version since HDF5 1.12.
+#if !H5_VERSION_GE(1, 12, 0)
+#define H5Ovisit3 H5Ovisit2
+#endif
+
 namespace softgrain {
 
 static_assert(sizeof(hid_t) == sizeof(std::int64_t));
@@ -195,7 +200,7 @@ std::vector<std::string> Hdf5Reader::datasets() const {
       static_cast<std::vector<std::string>*>(list)->push_back(std::string("/") + name);
     return 0;
   };
-  checked(H5Ovisit2(file_, H5_INDEX_NAME, H5_ITER_INC, visit, &paths, H5O_INFO_BASIC), name_,
+  checked(H5Ovisit3(file_, H5_INDEX_NAME, H5_ITER_INC, visit, &paths, H5O_INFO_BASIC), name_,
           "damaged HDF5 file");
   std::sort(paths.begin(), paths.end());
   return paths;
