@@ -8,13 +8,13 @@
 
 // The one door to toml++. Version 3.3.0 reaches undefined behaviour on some keys that are not ASCII and an
 // assertion on "[\0"; here both become exceptions. In the character tables, which are noexcept, unreachable
-// means "no".
+// means "no". Version 3.4 names its files .hpp.
 #undef TOML_HEADER_ONLY
 #undef TOML_SHARED_LIB
 #define TOML_HEADER_ONLY 1
 #define TOML_ENABLE_FORMATTERS 0
 #define TOML_MAX_NESTED_VALUES 8  // also bounds the depth of recursion
-#if __has_include(<toml++/impl/preprocessor.hpp>)  // since version 3.4
+#if __has_include(<toml++/impl/preprocessor.hpp>)
 #include <toml++/impl/preprocessor.hpp>
 #else
 #include <toml++/impl/preprocessor.h>

@@ -25,11 +25,11 @@ constexpr std::array types{
     TypeName{"int", "int32", Type::int32, 4},       TypeName{"uint", "uint32", Type::uint32, 4},
     TypeName{"float", "float32", Type::float32, 4}, TypeName{"double", "float64", Type::float64, 8}};
 
-const TypeName& type_named(const std::string& name, const std::string& place) {
+const TypeName* type_named(const std::string& name, const std::string& place) {
   const auto found = std::find_if(types.begin(), types.end(),
                                   [&](const TypeName& t) { return t.name == name || t.other == name; });
   require(found != types.end(), "{}: '{}' is no type of a PLY file", place, name.substr(0, 20));
-  return *found;
+  return &*found;
 }
 
 struct Property {
@@ -96,13 +96,13 @@ class HeaderReader {
     require(!header_.elements.empty(), "{}: a property stands behind its element", lines_.place());
     auto& properties = header_.elements.back().properties;
     if (words.size() == 5 && words[1] == "list") {
-      const TypeName& count = type_named(words[2], lines_.place());
-      require(count.type != Type::float32 && count.type != Type::float64,
+      const TypeName* count = type_named(words[2], lines_.place());
+      require(count->type != Type::float32 && count->type != Type::float64,
               "{}: a list's length is a whole number", lines_.place());
-      properties.push_back({words[4], &count, &type_named(words[3], lines_.place())});
+      properties.push_back({words[4], count, type_named(words[3], lines_.place())});
     } else {
       need(words.size() == 3, "property float x");
-      properties.push_back({words[2], nullptr, &type_named(words[1], lines_.place())});
+      properties.push_back({words[2], nullptr, type_named(words[1], lines_.place())});
     }
   }
 
