@@ -41,8 +41,8 @@ inline Words tiny_path(const std::string& name) {
          "loading.unload_by=0.04", "loading.max_stress=0", "loading.max_packing_fraction=0",
          "sample.packing_fraction=0.62", "kind.rigid.share=0.5"});
   if (name == "bonded_rigid")
-    add({"sample.grains=8", "bpm.primaries=20", "loading.wall_velocity=\"5 m/s\"", "loading.unload_at=[0.25]",
-         "loading.unload_by=0.04", "loading.max_stress=0"});
+    add({"sample.grains=8", "bpm.primaries=20", "loading.wall_velocity=\"5 m/s\"", "loading.max_strain=0.2",
+         "loading.unload_at=[0.16]", "loading.unload_by=0.04", "loading.max_stress=0"});
   if (name == "shapes")
     add({"kind.ellipse.number=2", "kind.square.number=2", "kind.drop.number=2",
          "loading.wall_velocity=\"4 m/s\"", "loading.max_strain=0.48", "sample.packing_fraction=0.58"});
@@ -169,8 +169,7 @@ inline std::vector<TinyCase> tiny_cases() {
     }
     if (name == "bonded_rigid") {
       Words more = tiny_path(name);
-      more.insert(more.end(),
-                  {"experiment.dimension=3", "box.x=\"periodic\"", "sample.packing_fraction=0.3"});
+      more.insert(more.end(), {"experiment.dimension=3", "sample.packing_fraction=0.3"});
       cases.push_back({"space-bonded_rigid", source, more});
     }
     if (name == "soft_rigid") {
