@@ -12,7 +12,7 @@ import numpy as np
 FIELD = Path(__file__).resolve().parents[2] / "benchmarks/field"
 sys.path.insert(0, str(FIELD))
 
-from field import lammps, one_grain, packings, page  # noqa: E402
+from field import flowing, lammps, one_grain, packings, page  # noqa: E402
 from field.case import Case, Column, Curve, mean_curve  # noqa: E402
 from field.cases import CASES  # noqa: E402
 from field.work import Place  # noqa: E402
@@ -42,6 +42,15 @@ class Counting(unittest.TestCase):
             again = packings.read_start(Path(folder) / "s.csv")
         for name in ("x", "y", "radius", "kind", "width", "height"):
             np.testing.assert_allclose(getattr(again, name), getattr(start, name), rtol=1e-8)
+
+    def test_spheres_come_back_as_they_were_written(self):
+        rng = np.random.default_rng(2)
+        spheres = flowing.Spheres(rng.uniform(-1, 1, (4, 3)), rng.uniform(0, 1, 4), np.full(3, 2.5))
+        with tempfile.TemporaryDirectory() as folder:
+            flowing.write_spheres(Path(folder) / "s.csv", spheres)
+            again = flowing.read_spheres(Path(folder) / "s.csv")
+        for name in ("centre", "radius", "side"):
+            np.testing.assert_allclose(getattr(again, name), getattr(spheres, name), rtol=1e-8)
 
     def test_pairs_of_a_local_dump_belong_to_their_frames(self):
         with tempfile.TemporaryDirectory() as folder:

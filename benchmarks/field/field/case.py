@@ -31,7 +31,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Case:
-    """One of the six: what is measured, where, and how each code measures it."""
+    """One of the set: what is measured, where, and how each code measures it."""
 
     name: str  # of its folder
     title: str
