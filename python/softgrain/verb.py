@@ -17,5 +17,6 @@ def carry_out(verb, arguments, action) -> int:
         print(f"error: {error}", file=sys.stderr)
         return USAGE_ERROR
     except OSError as error:
-        print(f"error: {error}", file=sys.stderr)
+        words = f"{error.filename}: {error.strerror}" if error.filename and error.strerror else error
+        print(f"error: {words}", file=sys.stderr)
         return IO_ERROR

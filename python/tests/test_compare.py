@@ -123,7 +123,8 @@ class Program(Temporary):
             code, _, err = self.call(*words)
             self.assertEqual(code, 2)
             self.assertIn("error: ", err)
-        self.assertEqual(self.call(run, self.folder / "missing.csv")[0], 4)
+        missing = self.folder / "missing.csv"
+        self.assertEqual(self.call(run, missing), (4, "", f"error: {missing}: No such file or directory\n"))
         self.assertEqual(self.call(run, good)[0], 0)
         self.assertTrue((run / "figures" / "compare.png").exists())
 

@@ -221,6 +221,14 @@ class Pictures(Temporary):
         words = " ".join(text.get_text() for text in figure.findobj(matplotlib.text.Text))
         self.assertIn("12 slopes 10", words)
 
+    def test_grains_that_pull_are_drawn_below_zero(self):
+        path = self.write()
+        rows = np.column_stack([np.linspace(0, 0.1, 50), 1e6 * np.sin(np.linspace(0, 6, 50))])
+        np.savetxt(path / "series.csv", rows, delimiter=",", header="strain,stress_top[Pa]", comments="")
+        with plot.style():
+            figure = plot.draw_curve([softgrain.open(path)])
+        self.assertLess(min(axes.get_ylim()[0] for axes in figure.axes), -1)
+
     def test_the_curve_of_a_packing_has_no_plateau(self):
         packing = self.open("packing", columns=("strain", "stress_top[Pa]", "phi"))
         grain = self.open("grain", columns=("strain", "stress_top[Pa]", "something_new"))

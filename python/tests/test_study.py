@@ -310,7 +310,8 @@ class Interrupted(Studies):
 
     def test_status_asks_for_a_directory_with_a_plan(self):
         self.assertIn("of which sweep", self.call("status")[2])
-        self.assertEqual(self.call("status", self.folder)[0], 4)
+        code, _, err = self.call("status", self.folder)
+        self.assertEqual((code, f"{self.folder} is no sweep's folder: it has no plan.toml" in err), (2, True))
 
 
 class Hands(Studies):

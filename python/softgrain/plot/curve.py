@@ -11,6 +11,7 @@ from .style import BLUE, GREEN, GREY, INK, MM, PURPLE, RUN_COLOURS, SINGLE_COLUM
 
 HEIGHT = 62  # [mm]
 LEFT, RIGHT, BOTTOM, KEY_LINE = 12, 2.5, 9.5, 4  # margins; above, a line of the key for each curve [mm]
+LEAST_PULL = 0.01  # of the largest stress: what is drawn below 0
 MOST_SLOPES = 3  # of unloadings that the key names one by one
 BRANCH_COLOURS = {measure.UNLOADING: VERMILLION, measure.RELOADING: GREEN, measure.HOLD: PURPLE}
 
@@ -81,12 +82,14 @@ def _common_characteristic_stress(curves):
 def _axes(figure, curves, characteristic):
     """One axes; if sigma_I lies far above the curves, also a strip around it, above a break, to scale."""
     top = 1.22 * max(c.stress.max() for c in curves) or 1.0
+    lowest = min(c.stress.min() for c in curves)
+    bottom = 1.1 * lowest if lowest < -LEAST_PULL * top else 0  # grains that adhere pull
     if characteristic is None or characteristic < 1.6 * top:
-        axes = figure.add_subplot(ylim=(0, max(top, 1.15 * (characteristic or 0))))
+        axes = figure.add_subplot(ylim=(bottom, max(top, 1.15 * (characteristic or 0))))
         return axes, axes
     height = 0.22 * top
     strip, axes = figure.subplots(2, sharex=True, height_ratios=(height, top))
-    axes.set_ylim(0, top)
+    axes.set_ylim(bottom, top)
     strip.set_ylim(characteristic - 0.4 * height, characteristic + 0.6 * height)
     strip.set_yticks([characteristic], [f"{characteristic:.2f}"])
     _mark_break(axes, strip)

@@ -36,7 +36,7 @@ class Pressure:
         self.name = "pressure" if "pressure" in snapshots[0].particles else "contact pressure"
         known = [s.values for s in self.surfaces if not np.isnan(s.values).all()]
         if not known:
-            raise NotRecorded("no pressure")
+            raise NotRecorded("no snapshot after the first step, so no pressure")
         self.range = colours.range_of(np.concatenate(known))
 
     def draw(self, panel, index):

@@ -20,6 +20,8 @@ def plan_of(options, program):
     """The plan that the words describe, or the one in the file or folder that they name. Raises PlanError."""
     path = Path(options.case)
     if path.is_dir():
+        if not (path / plan_file.NAME).exists():
+            raise PlanError(f"{path} is no sweep's folder: it has no {plan_file.NAME}")
         path = path / plan_file.NAME
     described = [name for name in ("set", "vary", "range", "design") if getattr(options, name)]
     if not (options.vary or options.design or options.range) or plan_file.is_plan(path):
