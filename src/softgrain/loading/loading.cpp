@@ -148,6 +148,7 @@ void LoadingOf<Dim>::after_step(const Box<Dim>& box, double time, double dt, con
     exit_ = static_cast<int>(exit - stage_now().exits.data());
     ended_ = End::exit;
   } else if (last_of_stage_ || is_over(box, felt)) {
+    note_past();
     note_unreached();
     leave_stage(stage_ + 1, box, time, dt);
   } else if (is_at_limit(box)) {

@@ -117,6 +117,9 @@ class LoadingOf {
   void leave_stage(std::size_t next, const Box<Dim>& box, double time, double dt);
   void note_unkept();
   void note_unreached();
+  void note_past();
+  bool opens() const;
+  double packing_fraction(const std::array<double, 3>& length) const;
   void begin_stage(const Box<Dim>& box, double time);
   void visit_start(StateVisitor& visit);
   void visit_stage(StateVisitor& visit);
@@ -158,7 +161,8 @@ class LoadingOf {
   std::array<HeldStress, 4> held_{};  // by drive of the stage
   HeldStress unkept_;                 // of the first that was not kept
   int unkept_stage_ = -1, unkept_part_ = 0;
-  int unreached_stage_ = -1, unreached_part_ = 0;  // the first stress that did not end its stage
+  // the first stress that did not end its stage; a part without one: the stage's strain was past as it began
+  int unreached_stage_ = -1, unreached_part_ = 0;
 };
 using Loading = LoadingOf<2>;
 

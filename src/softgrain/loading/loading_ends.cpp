@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "softgrain/loading/loading.hpp"
 
@@ -30,9 +32,47 @@ bool LoadingOf<Dim>::is_over(const Box<Dim>& box, const StepFelt& felt) const {
   if (until.overlap && felt.overlap_mean >= *until.overlap) return true;
   if (until.rest && felt.unrest < *until.rest) return true;
   if (!until.packing_fraction) return false;
-  double shrunk = frame_.start[0] * frame_.start[1] / (length(box, 0) * length(box, 1));
-  if (Dim == 3) shrunk *= frame_.start[2] / length(box, 2);
-  return frame_.packing_fraction * shrunk >= *until.packing_fraction;
+  const double now = packing_fraction({length(box, 0), length(box, 1), length(box, 2)});
+  const bool from_above = opens() && *until.packing_fraction < packing_fraction(length_at_stage_);
+  return from_above ? now <= *until.packing_fraction : now >= *until.packing_fraction;
+}
+
+/// Phi_0 where walls stand so far apart [m].
+template <int Dim>
+double LoadingOf<Dim>::packing_fraction(const std::array<double, 3>& length) const {
+  double shrunk = frame_.start[0] * frame_.start[1] / (length[0] * length[1]);
+  if (Dim == 3) shrunk *= frame_.start[2] / length[2];
+  return frame_.packing_fraction * shrunk;
+}
+
+/// Do all walls that the stage moves go apart?
+template <int Dim>
+bool LoadingOf<Dim>::opens() const {
+  const int last = Dim == 3 ? 3 : 2;
+  return std::any_of(closing_.begin(), closing_.begin() + last, [](double speed) { return speed < 0; }) &&
+         std::none_of(closing_.begin(), closing_.begin() + last, [](double speed) { return speed > 0; });
+}
+
+/// Keeps the first stage of which walls move away from the strain or packing fraction that is to end it.
+template <int Dim>
+void LoadingOf<Dim>::note_past() {
+  constexpr double rounding = 1e-9;
+  const Until& until = stage_now().until;
+  if (unreached_stage_ >= 0 || stage_now().towards) return;
+  bool past = false;
+  for (std::size_t c = 0; c < 3; ++c)
+    if (until.strain[c]) {
+      const double way = *until.strain[c] - strains_at_stage()[c];
+      past = past || (std::abs(way) > rounding && way * closing_[c] < 0);
+    }
+  if (until.packing_fraction && closing_ != std::array<double, 3>{}) {
+    const double way = *until.packing_fraction - packing_fraction(length_at_stage_);
+    past = past || (std::abs(way) > rounding && (way < 0) != opens());
+  }
+  const auto no_stress = std::find(until.stress.begin(), until.stress.end(), std::nullopt);
+  if (!past || no_stress == until.stress.end()) return;
+  unreached_stage_ = static_cast<int>(stage_);
+  unreached_part_ = static_cast<int>(no_stress - until.stress.begin());
 }
 
 template <int Dim>

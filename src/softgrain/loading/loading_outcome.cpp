@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/loading/loading.hpp"
@@ -20,6 +21,22 @@ std::string asked_of(const Stage& stage, std::size_t number, int dimension) {
   if (until.overlap) add(fmt::format("overlap {:.3g}", *until.overlap));
   if (until.rest) add(fmt::format("rest {:.3g}", *until.rest));
   return fmt::format("{}: {}", stage.key.empty() ? stage.title(number) : std::string(stage.key), text);
+}
+
+/// Of a stage that ended as it began.
+std::string past_of(const Stage& stage, int number) {
+  const Until& until = stage.until;
+  std::string ends;
+  const auto add = [&](std::string_view what, const std::optional<double>& value) {
+    if (value) ends += fmt::format("{}{} {:.4g}", ends.empty() ? "" : " or ", what, *value);
+  };
+  for (const std::optional<double>& strain : until.strain) add("strain", strain);
+  add("packing_fraction", until.packing_fraction);
+  return fmt::format(
+      "{} ended as it began: its walls move away from {}, which was past already; turn its velocity round, "
+      "or "
+      "give another end",
+      stage.title(static_cast<std::size_t>(number)), ends);
 }
 
 }  // namespace
@@ -105,6 +122,10 @@ LoadingOutcome LoadingOf<Dim>::outcome_of_exits() const {
       return {.completed = ended_ != End::none,
               .shortfall = not_reached(exit.key, exit.stress, 0) + ", so nothing was held"};
   for (const Exit& exit : exits)
+    if (exit.overlap > 0 && ended_ == End::none)
+      return {.completed = true,
+              .shortfall = fmt::format("{} of {:.3g} was not reached", exit.key, exit.overlap)};
+  for (const Exit& exit : exits)
     if (exit.stress > 0 && ended_ == End::none)
       return {.completed = true, .shortfall = not_reached(exit.key, exit.stress, 0)};
   return {};
@@ -125,6 +146,8 @@ LoadingOutcome LoadingOf<Dim>::outcome_of_stresses() const {
   }
   if (unreached_stage_ < 0) return {};
   const Stage& stage = stages_[unreached_stage_];
+  if (!stage.until.stress[unreached_part_])
+    return {.completed = false, .shortfall = past_of(stage, unreached_stage_)};
   const std::string what = stage.key.empty() ? fmt::format("{}: stress_{}", stage.title(unreached_stage_),
                                                            name_of(static_cast<Part>(unreached_part_), Dim))
                                              : std::string(stage.key);

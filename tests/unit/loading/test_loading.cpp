@@ -79,6 +79,9 @@ TEST_CASE("a stage whose strain is past already moves nothing, and the next one 
   CHECK(run.box.height() == height);
   run.finish();
   CHECK(run.loading.strain(run.box) == doctest::Approx(0.12).epsilon(1e-9));
+  CHECK_FALSE(run.loading.outcome().completed);
+  CHECK(run.loading.outcome().shortfall.starts_with(
+      "stage 1 ended as it began: its walls move away from strain 0.05, which was past already"));
 }
 
 TEST_CASE("a strain swings by its amplitude about where the stage began, and comes back") {

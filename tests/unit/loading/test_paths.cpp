@@ -264,3 +264,21 @@ TEST_CASE("a stress that is met while the walls go back is not held") {
   }
   CHECK(run.loading.outcome().shortfall.find("so nothing was held") != std::string::npos);
 }
+
+TEST_CASE("walls that go apart end at a packing fraction from above, and none is past unseen") {
+  const auto at_fraction = [](double velocity, double fraction) -> Stage {
+    return {.drives = {moves(Part::yy, velocity)}, .until = {.packing_fraction = fraction}};
+  };
+  SpringRun apart = run_of({at_fraction(1, 0.9), at_fraction(-1, 0.8)}, 0);
+  apart.finish_stage();
+  const double dense = apart.box.height();
+  apart.finish();
+  CHECK(apart.box.height() / dense == doctest::Approx(0.9 / 0.8).epsilon(0.01));
+  CHECK(apart.loading.outcome().shortfall.empty());
+  for (const auto& [velocity, fraction] : {std::pair{1.0, 0.1}, {-1.0, 0.95}}) {
+    SpringRun past = run_of({at_fraction(velocity, fraction)}, 0);
+    past.finish();
+    CHECK_FALSE(past.loading.outcome().completed);
+    CHECK(past.loading.outcome().shortfall.find("packing_fraction") != std::string::npos);
+  }
+}
