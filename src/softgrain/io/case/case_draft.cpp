@@ -20,7 +20,9 @@ void CaseDraft::give(const Key& key, const std::string& name, const TomlValue& v
     const auto [other, first] = names_.emplace(key.name, name);
     if (!first)
       return add(origin,
-                 fmt::format("'{}' says again what '{}' says: give one of them", name, other->second));
+                 name == other->second
+                     ? fmt::format("'{}' is given twice: give it once", name)
+                     : fmt::format("'{}' says again what '{}' says: give one of them", name, other->second));
   }
   origins[key.name] = origin;
   try {

@@ -232,16 +232,12 @@ class CaseReader {
       // looked at for each kind
       if (!draft_.the_case.kinds.empty() && std::ranges::all_of(relation.keys, is_of_kind)) continue;
       const std::string message = relation.broken(draft_.the_case);
-      if (!message.empty()) draft_.add(last_origin(relation.keys), message);
+      if (!message.empty()) draft_.add(origin_of_fault(message, relation.keys, draft_.origins), message);
     }
   }
 
   Origin last_origin(const std::vector<std::string>& keys) const {
-    Origin last;
-    for (const std::string& key : keys)
-      if (const auto found = draft_.origins.find(key); found != draft_.origins.end())
-        last = std::max(last, found->second);
-    return last;
+    return softgrain::last_origin(keys, draft_.origins);
   }
 
   /// The nearest full name, or the key of this name in another table.

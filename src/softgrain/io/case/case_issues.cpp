@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace softgrain {
 namespace {
@@ -32,6 +33,37 @@ std::string shown(const Issue& issue, std::span<const Source> sources, std::span
 }
 
 }  // namespace
+
+Origin last_origin(const std::vector<std::string>& keys, const std::map<std::string, Origin>& origins) {
+  Origin last;
+  for (const std::string& key : keys)
+    if (const auto found = origins.find(key); found != origins.end()) last = std::max(last, found->second);
+  return last;
+}
+
+std::size_t place_of_key(const std::string& key, std::string_view message) {
+  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz0123456789_";
+  const auto is_letter = [&](std::size_t i) {
+    return i < message.size() && letters.find(message[i]) != std::string_view::npos;
+  };
+  std::size_t at = message.find(key);
+  while (at != std::string_view::npos && (is_letter(at + key.size()) || (at > 0 && is_letter(at - 1))))
+    at = message.find(key, at + 1);
+  return at;
+}
+
+Origin origin_of_fault(std::string_view message, const std::vector<std::string>& keys,
+                       const std::map<std::string, Origin>& origins) {
+  const auto is_named = [&](const std::string& key) {
+    const std::string name = key.substr(key.find('.') + 1);  // alone, where it is no word of English
+    const bool is_word = name.find_first_of("_0123456789") == std::string::npos;
+    return place_of_key(is_word ? key : name, message) != std::string_view::npos;
+  };
+  std::vector<std::string> named;
+  std::ranges::copy_if(keys, std::back_inserter(named), is_named);
+  const Origin of_named = last_origin(named, origins);
+  return of_named == Origin{} ? last_origin(keys, origins) : of_named;
+}
 
 std::string_view line_of(std::string_view text, int number) {
   if (number == 0) return "";

@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,17 @@ struct Origin {
   }
   friend bool operator==(const Origin&, const Origin&) = default;
 };
+
+/// The last place where one of these keys was given; nowhere if none was.
+Origin last_origin(const std::vector<std::string>& keys, const std::map<std::string, Origin>& origins);
+
+/// Where a message first names a key, by its full name; npos for nowhere.
+std::size_t place_of_key(const std::string& key, std::string_view message);
+
+/// The place of what is wrong between some keys: the last of those that the message names, if they were
+/// given, else of all.
+Origin origin_of_fault(std::string_view message, const std::vector<std::string>& keys,
+                       const std::map<std::string, Origin>& origins);
 
 /// One error.
 struct Issue {

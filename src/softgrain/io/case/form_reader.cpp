@@ -126,6 +126,8 @@ bool FormReader::read_key(const std::string& name, const TomlValue& value, Origi
   if (const std::string later = not_yet(name); !later.empty()) return draft_.add(origin, later), true;
   if (!kinds_.empty() && name.starts_with("kind.")) return keep_key_of_kind(name, value, origin);
   const FormKey* form = find_form(name);
+  const std::string own = fmt::format("kind.{}.", kind_name_);  // of the only one
+  if (form == nullptr && name.starts_with(own)) form = find_form("kind." + name.substr(own.size()));
   if (form == nullptr) return false;
   if (name.starts_with("pair.") || name.starts_with("stage."))
     return draft_.add(origin,
@@ -284,6 +286,7 @@ void FormReader::finish_file() {
 
 void FormReader::finish_stages() {
   if (!stages_.empty() && draft_.issues.empty()) read_stages(stages_, draft_);
+  if (!stages_.empty() && draft_.the_case.stages.empty()) draft_.invalid.insert("experiment.loading");
 }
 
 }  // namespace softgrain

@@ -74,6 +74,7 @@ TEST_CASE("the resolved case keeps its stages, and reads back to itself") {
       "yy = { strain_amplitude = 0.1, period = 3 }\nleft = 'rest'\nuntil.time = 2\nrepeat = 4\n";
   const std::string refused = refusal(text);
   CHECK(mentions(refused, "xx and left both move one wall"));
+  CHECK(mentions(refused, "1 error; nothing was run"));  // not that the case has no stages, too
   std::string good = text;
   good.replace(good.find("left = 'rest'\n"), 14, "");
   const Case read = parse_case(good, "case.toml"), again = parse_case(resolved_case_text(read), "case.toml");
