@@ -11,6 +11,7 @@
 #include "softgrain/experiment/shape_of_case.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
 #include "softgrain/material/any_law.hpp"
+#include "softgrain/soft/reference_grid.hpp"
 
 namespace softgrain {
 namespace {
@@ -80,8 +81,8 @@ double primaries(const Case& c) {
 
 int points_of_grain(const Case& c) {
   const int n = c.mpm.cells;
-  if (is_rigid(c)) return 4 * n;
-  return is_in_space(c) ? 32 * n * n * n : 14 * n * n;
+  if (is_rigid(c)) return is_in_space(c) ? 6 * n * n + 2 : 4 * n;
+  return is_in_space(c) ? 8 * (n * n * n + n / 2 * 6 * n * n) : 4 * (n * n + disk_rings(n) * 4 * n);
 }
 
 double box_height(const Case& c) {

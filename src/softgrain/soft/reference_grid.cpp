@@ -113,7 +113,7 @@ MaterialPoint point_of_cell(const ReferenceGrid& grid, const std::array<int, 4>&
 
 ReferenceGrid disk_grid(int n) {
   require(n >= 2, "a grain needs at least 2 cells along the side of its inner square, got {}", n);
-  const int rings = std::max(1, (5 * n + 4) / 8), around = 4 * n;
+  const int rings = disk_rings(n), around = 4 * n;
   ReferenceGrid grid;
   const auto inner = [&](int i, int j) { return j * (n + 1) + i; };
   for (int j = 0; j <= n; ++j)

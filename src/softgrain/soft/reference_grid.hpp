@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -29,6 +30,8 @@ struct ReferenceGrid {
 /// nowhere outwards, and `fullness` is pi over its area. `n` is the number of cells along a side of the inner
 /// square. Raises UsageError for n < 2.
 ReferenceGrid disk_grid(int n);
+/// Rings of cells round its inner square: 5n/8, rounded, and at least 1.
+constexpr int disk_rings(int n) { return std::max(1, (5 * n + 4) / 8); }
 
 /// Any simple polygon, resampled to 4n points with all its vertices kept; interior nodes at the mean of their
 /// neighbours. Raises UsageError if the outline crosses itself, has more than 4n vertices, or is so concave

@@ -4,6 +4,8 @@
 
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/ranks_estimate.hpp"
+#include "softgrain/soft/reference_grid.hpp"
+#include "softgrain/soft/solid_grid.hpp"
 
 using namespace softgrain;
 
@@ -15,6 +17,21 @@ TEST_CASE("a loading without unloading takes travel over wall velocity over time
   c.grain.radius = 5e-3;
   c.time.step = 1e-6;
   CHECK(estimate(c).steps == 10000);
+}
+
+TEST_CASE("the points of a grain are those of its grid, whatever the number of cells") {
+  Case c;
+  c.experiment.model = GrainModel::mpm;
+  for (const int n : {2, 3, 4, 5, 6, 8, 11}) {
+    c.mpm.cells = n;
+    c.experiment.dimension = 2;
+    CHECK(points_of_grain(c) == 4 * static_cast<int>(disk_grid(n).cell.size()));
+    c.experiment.dimension = 3;
+    CHECK(points_of_grain(c) == 8 * static_cast<int>(ball_grid(n).cell.size()));
+    c.experiment.model = GrainModel::rigid;
+    CHECK(points_of_grain(c) == ball_grid(n).outline_nodes());
+    c.experiment.model = GrainModel::mpm;
+  }
 }
 
 TEST_CASE("the estimate counts the steps of every path") {
