@@ -125,10 +125,14 @@ void ImplicitDynamics::give_up(Failure failure, double dt) const {
                       : failure == Failure::too_far           ? "a motion is larger than half a radius"
                       : failure == Failure::too_deep          ? "a contact stays too deep"
                                                               : "Newton's method does not converge";
-  throw NumericalError(
-      fmt::format("the implicit step failed even at dt = {:.3g} s, {:.3g} of the explicit step: {} in grain "
-                  "{}; use a finer grid (mpm.cells) or a larger mpm.tolerance, or end at a smaller strain",
-                  dt, dt / explicit_step_, cause, failed_grain_));
+  const char* remedy =
+      failure == Failure::inverted_point || failure == Failure::indefinite_matrix  //
+          ? "move the walls more slowly, use a finer grid (mpm.cells), or end at a smaller strain"
+          : "use a larger mpm.tolerance or a finer grid (mpm.cells), move the walls more slowly, or "
+            "end at a smaller strain";
+  throw NumericalError(fmt::format(
+      "the implicit step failed even at dt = {:.3g} s, {:.3g} of the explicit step: {} in grain {}; {}", dt,
+      dt / explicit_step_, cause, failed_grain_, remedy));
 }
 
 ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& report) {

@@ -144,6 +144,9 @@ Snapshot snapshot_of(const Datasets& datasets, const std::string& name) {
 
 /// The HDF5 file in front of the hash. The library must not see damaged bytes: it may crash on them.
 std::string_view checked_contents(std::string_view bytes, const std::string& name) {
+  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+  if (!bytes.starts_with(signature))
+    throw IoError(fmt::format("{}: not a snapshot: no HDF5 file, or one without its beginning", name));
   const auto contents = bytes.substr(0, bytes.size() - std::min(bytes.size(), hash_length));
   if (bytes.substr(contents.size()) != file_hash(contents))
     throw IoError(fmt::format("{}: not a snapshot, or a damaged one: the hash at its end is wrong", name));
