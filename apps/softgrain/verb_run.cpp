@@ -113,11 +113,11 @@ void require_memory_and_disk(const Case& the_case, const RunPaths& paths) {
 
 /// from: the state to begin with, if any.
 void carry_out(const RunRequest& request, const RunDirectory& directory, const RunOptions& options,
-               const std::vector<std::string>& notes, const Checkpoint* from = nullptr) {
+               const std::vector<std::string>& notes, const OriginState* from = nullptr) {
   SignalWatch signals;
   set_threads(options.threads > 0 ? options.threads : threads_of_rank());
   const auto simulation = create_any_simulation(request.the_case);
-  if (from != nullptr) simulation->begin_from(*from);
+  if (from != nullptr) begin_from(*simulation, *from, request.the_case);
   RunOutcome outcome;
   {
     const bool quiet = options.quiet || communicator().rank() != 0;
@@ -210,7 +210,7 @@ void run_from(const RunArguments& arguments) {
   if (!arguments.force) require_memory_and_disk(request.the_case, paths);
   const auto directory = RunDirectory::take(
       paths.root, arguments.force ? RunDirectory::IfNotEmpty::keep : RunDirectory::IfNotEmpty::refuse);
-  carry_out(request, *directory, arguments.options, notes_of(reading), &origin.snapshot.checkpoint);
+  carry_out(request, *directory, arguments.options, notes_of(reading), &origin);
 }
 
 Case case_to_resume(const std::string& text, const RunPaths& paths) {
@@ -248,6 +248,8 @@ void add_run_verb(CLI::App& app) {
   run->get_option("CASE")->required(false);
   run->add_option("-o,--output", arguments->options.directory,
                   "directory (default: CASE without .toml, with _run)")
+      ->check(
+          [](const std::string& name) { return name.empty() ? "must be a directory's name, got \"\"" : ""; })
       ->type_name("DIR");
   auto* resume = run->add_flag("--resume", arguments->resume,
                                "go on from the newest intact snapshot, if there is one; also to a later end");

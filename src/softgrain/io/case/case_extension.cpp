@@ -39,4 +39,15 @@ std::string why_no_extension(const Case& begun, const Case& wanted) {
   return "";
 }
 
+std::string why_other_grains(const Case& begun, const Case& wanted) {
+  for (const char* name :
+       {"experiment.model", "experiment.dimension", "sample.grains", "mpm.cells", "mpm.formulation",
+        "mpm.law", "bpm.primaries", "grain.shape", "grain.sides", "box.x", "box.y", "box.z"}) {
+    const Key& key = *find_key(name);
+    if (si_value(begun, key) != si_value(wanted, key))
+      return fmt::format("{} was {}, not {}", name, written_value(begun, key), written_value(wanted, key));
+  }
+  return kinds_text(begun) != kinds_text(wanted) ? "its kinds of grains were others" : "";
+}
+
 }  // namespace softgrain

@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/io/case/case_extension.hpp"
+#include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/format/hdf5_file.hpp"
 
 namespace softgrain {
@@ -49,6 +51,18 @@ OriginState read_origin(const std::string& text) {
                     Hdf5Reader(file).text_attribute("content_hash"), record.command}};
   state.origins.insert(state.origins.end(), record.origins.begin(), record.origins.end());
   return state;
+}
+
+void begin_from(AnySimulation& simulation, const OriginState& origin, const Case& the_case) {
+  try {
+    simulation.begin_from(origin.snapshot.checkpoint);
+  } catch (const IoError&) {
+    const std::string name = origin.paths.case_file().string();
+    const std::string why = why_other_grains(parse_recorded_case(origin.snapshot.case_text, name), the_case);
+    if (why.empty()) throw;
+    throw UsageError(fmt::format("--from takes the grains of {} as they are: {}; change it back",
+                                 origin.paths.root.string(), why));
+  }
 }
 
 }  // namespace softgrain
