@@ -45,30 +45,31 @@ void NearVertices::find_for_middle(const PatchNet& net, int first_vertex, const 
   near.clear();
   for (const std::size_t corner : PatchNet::corner)
     for (NearestVertex n : of(first_vertex + net.vertex[corner])) {
-      walk(x, n);
+      n.distance_squared = distance_squared(x, n.vertex);
       add_nearest(n, near);
     }
+  for (NearestVertex& n : near) walk(x, n);
   sort_by_grain(near);
 }
 
-/// Downhill from n.vertex to the vertex of its grain that is nearest to x.
-void NearVertices::walk(const Vec<3>& x, NearestVertex& n) const {
+double NearVertices::distance_squared(const Vec<3>& x, int vertex) const {
   const OutlineStateOf<3>& state = surfaces_.state;
+  Vec<3> d = state.position[vertex] - x;
+  if (state.cell.any()) d += state.cell.shift(state.cell.nearest(d));
+  return dot(d, d);
+}
+
+/// Downhill from n.vertex, at its distance, to the vertex of its grain that is nearest to x.
+void NearVertices::walk(const Vec<3>& x, NearestVertex& n) const {
   const SolidTopology& shape = surfaces_.grains.topology(n.grain);
   const int begin = surfaces_.grains.outline_begin(n.grain);
-  const auto distance_squared = [&](int w) {
-    Vec<3> d = state.position[w] - x;
-    if (state.cell.any()) d += state.cell.shift(state.cell.nearest(d));
-    return dot(d, d);
-  };
-  n.distance_squared = distance_squared(n.vertex);
   for (int from = -1; from != n.vertex;) {
     from = n.vertex;
     for (const int q : shape.quads_round[from - begin]) {
       if (q < 0) continue;
       for (const std::size_t corner : PatchNet::corner) {
         const int w = begin + shape.patches[q].vertex[corner];
-        if (const double next = distance_squared(w); next < n.distance_squared)
+        if (const double next = distance_squared(x, w); next < n.distance_squared)
           n.vertex = w, n.distance_squared = next;
       }
     }

@@ -29,6 +29,7 @@ class NearVertices {
                        std::vector<NearestVertex>& near) const;
 
  private:
+  double distance_squared(const Vec<3>& x, int vertex) const;
   void walk(const Vec<3>& x, NearestVertex& n) const;
   void find(double reach, int v, std::vector<NearestVertex>& all) const;
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/geometry/polygon.hpp"
 #include "softgrain/soft/contact_lists.hpp"
 #include "softgrain/soft/equilibrium.hpp"
@@ -84,10 +85,13 @@ std::vector<Vec<Dim>> centres_of(const GrainsOf<Dim>& grains) {
 
 template <int Dim>
 double stored_energy(const GrainsOf<Dim>& grains) {
+  std::vector<Wide> elastic(grains.batches.size());
+  parallel_for(static_cast<int>(elastic.size()),
+               [&](int b) { elastic[b] = elastic_energy(grains, grains.batches[b]); });
   double energy = 0;
-  for (const BatchOf<Dim>& batch : grains.batches) {
-    const Wide elastic = elastic_energy(grains, batch);
-    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) energy += elastic[lane];
+  for (std::size_t b = 0; b < elastic.size(); ++b) {
+    const BatchOf<Dim>& batch = grains.batches[b];
+    for (int lane = 0; lane < Wide::size && batch.grain[lane] >= 0; ++lane) energy += elastic[b][lane];
   }
   return energy;
 }

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "softgrain/core/error.hpp"
+#include "softgrain/core/parallel.hpp"
 #include "softgrain/material/elastic_law.hpp"
 #include "softgrain/soft/contact_lists.hpp"
 #include "softgrain/soft/soft_view.hpp"
@@ -123,14 +124,13 @@ std::vector<ContactPointOf<3>> contact_points(const SoftViewOf<3>& view) {
 std::vector<SurfaceMeasure> outlines_of(const SolidGrains& grains) {
   std::vector<Vec<3>> x;
   grains.gather_outline(x);
-  std::vector<SurfaceMeasure> measures;
-  for (int g = 0; g < grains.size(); ++g) {
+  std::vector<SurfaceMeasure> measures(grains.size());
+  parallel_for(grains.size(), [&](int g) {
     const SolidTopology& shape = grains.topology(g);
-    SurfaceMeasure measure = measure_surface(shape.patches, &x[grains.outline_begin(g)]);
-    measure.volume *= shape.patch_fullness;
-    measure.area *= std::pow(shape.patch_fullness, 2.0 / 3);
-    measures.push_back(measure);
-  }
+    measures[g] = measure_surface(shape.patches, &x[grains.outline_begin(g)]);
+    measures[g].volume *= shape.patch_fullness;
+    measures[g].area *= std::pow(shape.patch_fullness, 2.0 / 3);
+  });
   return measures;
 }
 
