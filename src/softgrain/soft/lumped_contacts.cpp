@@ -100,6 +100,7 @@ Violation LumpedSystem<Dim>::sweep(std::span<Vec<Dim>> impulse, std::span<const 
   for_each_strip([&](int strip) {
     Violation sum;
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
+      if constexpr (Dim == 3) Row::fetch_ahead(&rows_[k]);
       const int c = rows_[k].contact;
       if ((pushed_ && pushed_->has(c)) || of_bodies_.has(c)) continue;
       solve(rows_[k], impulse[c], friction[c], options, sum);

@@ -65,6 +65,13 @@ struct LumpedRow<3> {
   Vec<3> normal, offset;
   double delassus = 0, inverse_delassus = 0;
 
+  /// Asks for the row some turns ahead, which comes from far: the rows of hundreds of grains fill no cache.
+  [[gnu::always_inline]] static void fetch_ahead(const LumpedRow* now) {
+    constexpr std::size_t turns = 4, line = 64;
+    for (std::size_t at = 0; at < sizeof(LumpedRow); at += line)
+      __builtin_prefetch(reinterpret_cast<const char*>(now + turns) + at);
+  }
+
   LumpedRow() = default;
   LumpedRow(const SurfaceContact& met, std::span<const double> inverse_mass)
       : begin(met.own != nullptr ? met.own_begin : met.vertex),
