@@ -58,4 +58,4 @@ class ByCMake(build_ext):
             subprocess.run(["strip", *(["-x"] if MACOS else ["--strip-unneeded"]), copy], check=True)
 
 
-setup(ext_modules=[Extension("softgrain._core", sources=[])], cmdclass={"build_ext": ByCMake})
+setup(license="Apache-2.0", ext_modules=[Extension("softgrain._core", sources=[])], cmdclass={"build_ext": ByCMake})
