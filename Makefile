@@ -41,8 +41,10 @@ live: ## the live page, build/live/index.html: the solver in a browser, by Emscr
 	@tools/install_dependencies.sh --with wasm --with viewer
 	tools/build_live
 
-torture: ## long forms of the reliability tests, fuzzers, sanitizers, builds compared, 64-bit ARM (hours)
-	@tools/install_dependencies.sh --with torture
+torture: ## long forms of the reliability tests, fuzzers, sanitizers, builds compared, a wheel, 64-bit ARM (hours)
+	@tools/install_dependencies.sh --with torture --with wheel
+	/usr/bin/python3 -m build --wheel --no-isolation --outdir build/wheel
+	tools/check_wheel build/wheel/softgrain-*.whl
 	cmake --preset dev
 	cmake --build --preset dev
 	SOFTGRAIN_TORTURE=1 ctest --preset dev -L reliability --timeout 7200

@@ -56,6 +56,7 @@ wheel      python3-build           builds a wheel
 wheel      python3-setuptools      calls CMake for it
 wheel      python3-wheel           packs it
 wheel      python3-pybind11        is found by Python, as pip's is
+wheel      python3-venv            tools/check_wheel installs it
 viewer     chromium                tests the page of softgrain report
 viewer     npm                     tools/check_viewer
 torture    tmux                    a real terminal for the test of signals

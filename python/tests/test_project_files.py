@@ -3,6 +3,8 @@
 import json
 import re
 import runpy
+import subprocess
+import sys
 import unittest
 from pathlib import Path
 
@@ -95,6 +97,25 @@ class Files(unittest.TestCase):
                 ids = [field["id"] for field in content["body"]]
                 self.assertEqual(len(ids), len(set(ids)))
                 self.assertTrue(all(field["attributes"]["label"] for field in content["body"]))
+
+    def test_sources_on_both_sides_of_a_dash_come_into_different_joints(self):
+        """A joint of io/ with readers of cases and of snapshots takes HDF5 into the Python module: then no wheel can be linked."""
+        io = ROOT / "src/softgrain/io"
+        cases, runs = ([str(path) for folder in folders for path in sorted((io / folder).glob("*.cpp"))]
+                       for folders in (["case"], ["page", "run"]))
+        mixed = [joint for joint in self.joints(cases + runs) if set(joint) & set(cases) and set(joint) & set(runs)]
+        self.assertTrue(mixed)  # else the dash would be of no use
+        for joint in self.joints([*cases, "--", *runs]):
+            self.assertFalse(set(joint) & set(cases) and set(joint) & set(runs), joint)
+
+    def joints(self, words):
+        told = subprocess.run([sys.executable, ROOT / "tools/joint_sources.py", "1000", *words], capture_output=True, text=True, check=True)
+        made = {}
+        for line in told.stdout.splitlines():
+            number, source = line.split(" ", 1)
+            made.setdefault(number, []).append(source)
+        self.assertEqual(sorted(sum(made.values(), [])), sorted(set(words) - {"--"}))
+        return list(made.values())
 
 
 if __name__ == "__main__":
