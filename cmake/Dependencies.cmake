@@ -29,7 +29,8 @@ find_package(Eigen3 REQUIRED NO_MODULE)
 find_path(DEFLATE_INCLUDE_DIR libdeflate.h REQUIRED)
 find_library(DEFLATE_LIBRARY ${deflate} REQUIRED)
 find_package(HDF5 REQUIRED COMPONENTS C)
-if(SOFTGRAIN_STATIC)  # of what HDF5 asks for, compression is used; --as-needed leaves the rest out
+if(SOFTGRAIN_STATIC)  # of what HDF5 asks for, compression is used; cmake/no_network.c stands in for the network
+  list(FILTER HDF5_C_LIBRARIES EXCLUDE REGEX "/lib(curl|crypto)\\.so$")
   list(TRANSFORM HDF5_C_LIBRARIES REPLACE "/lib(sz|z)\\.so$" "/lib\\1.a")
   if(HDF5_C_LIBRARIES MATCHES "libsz")
     find_library(AEC_LIBRARY libaec.a REQUIRED)
