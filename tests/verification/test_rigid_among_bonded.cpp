@@ -43,7 +43,7 @@ BondedGrainsSetupOf<Dim> bonded_and_rigid(int primaries, const std::vector<Vec<D
       .laws = std::vector<Attraction>(place.size() + 1),
       .kind = std::vector<int>(place.size() + 1, 0),
       .friction = {.between = 0.3},
-      .options = {.solver = {.min_sweeps = 20, .max_sweeps = 2000, .tolerance = 1e-10}, .law = {}},
+      .options = {.solver = {.min_sweeps = 20, .max_sweeps = 500, .tolerance = 1e-9}, .law = {}},
       .skin = 0.2 * a0,
       .density = density,
       .sigma_I = 1e6};
@@ -84,23 +84,23 @@ TEST_CASE_TEMPLATE(
   constexpr int Dim = Dimension::value;
   Vec<Dim> place;
   place[0] = 0.3 * R, place[Dim - 1] = 2.1 * R;
-  auto setup = bonded_and_rigid<Dim>(60, {place}, R, 3 * density);
-  setup.particles.velocity[60][Dim - 1] = -4;
-  setup.particles.velocity[60][0] = 1;
+  auto setup = bonded_and_rigid<Dim>(20, {place}, R, 3 * density);
+  setup.particles.velocity[20][Dim - 1] = -4;
+  setup.particles.velocity[20][0] = 1;
   const Momenta<Dim> before(setup.particles);
   const double kinetic = kinetic_energy(setup.particles);
   BondedGrainsOf<Dim> grains(std::move(setup));
   Box<Dim> box;
   bool met = false;
-  for (int k = 0; k < 4000; ++k) {
-    grains.step(box, 0.2e-6);
+  for (int k = 0; k < 2000; ++k) {
+    grains.step(box, 0.4e-6);
     met = met || !grains.contacts().empty();
   }
   const RigidParticles<Dim>& p = grains.dynamics().particles;
   const Momenta<Dim> after(p);
   REQUIRE(met);
   CHECK(grains.contacts().empty());                                               // they have parted
-  CHECK(std::abs(p.spin[60][0]) + std::abs(p.spin[60][spin_size<Dim> - 1]) > 0);  // it was turned by friction
+  CHECK(std::abs(p.spin[20][0]) + std::abs(p.spin[20][spin_size<Dim> - 1]) > 0);  // it was turned by friction
   CHECK(norm(after.linear - before.linear) < 1e-12 * norm(before.linear));
   CHECK(std::abs(after.angular - before.angular) < 1e-5 * std::abs(before.angular));
   CHECK(std::abs(grains.energies().error + kinetic) < 1e-4 * kinetic);  // its budget begins at rest
