@@ -3,9 +3,9 @@
 
     tools/joint_sources.py LINES SOURCE... [-- SOURCE...]    prints "NUMBER SOURCE" for each: those of one number are one joint
 
-A joint source has at most LINES lines. -- keeps the sources before it from those behind it. Sources with a name in common in their anonymous namespaces, or that make functions
-of one template, are not joined; nor is one whose hidden name stands in a header of src/, or of tests/, that another one of
-that folder includes.
+A joint source has at most LINES lines. -- keeps the sources before it from those behind it. Sources with a name in common
+in their anonymous namespaces, or that make functions of one template, are not joined; nor is one whose hidden name stands in
+a header of src/, or of tests/, that another one of that folder includes.
 """
 import functools
 import re
