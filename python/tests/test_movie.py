@@ -63,14 +63,14 @@ class Frames(unittest.TestCase):
         run = small_run("elastic")
         film = film_of(run)
         pressures = np.concatenate([run[k].particles["pressure"].reshape(-1, 4).mean(axis=1)
-                                    for k in range(1, len(run))]) / 1e6  # the first is before the first contact
+                                    for k in range(1, len(run))])  # the first is before the first contact
         map, *ends = colours.range_of(pressures)
         self.assertEqual(film.pressure.range.map, map)
         np.testing.assert_allclose(film.pressure.range[1:], ends)
         for k in (1, 4):
             film[k]
             painted = film.axes.collections[0].get_facecolor()[:, :3]
-            expected = run[k].particles["pressure"].reshape(-1, 4).mean(axis=1) / 1e6
+            expected = run[k].particles["pressure"].reshape(-1, 4).mean(axis=1)
             np.testing.assert_allclose(painted, film.pressure.range.rgb(expected), atol=1e-12)
 
     def test_the_picture_holds_every_snapshot_at_one_scale(self):

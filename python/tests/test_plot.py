@@ -210,6 +210,17 @@ class Pictures(Temporary):
         self.assertIn("0.50 MPa", words)
         self.assertIn("slope 10 MPa", words)
 
+    def test_weak_stresses_have_a_smaller_unit(self):
+        for largest, unit in ((1e6, "MPa"), (1.1e4, "MPa"), (900, "kPa"), (9, "Pa")):
+            path = self.write(f"{largest:g}")
+            rows = np.column_stack([np.linspace(0, 0.1, 50), np.linspace(0, largest, 50)])
+            np.savetxt(path / "series.csv", rows, delimiter=",", header="strain,stress_top[Pa]", comments="")
+            with plot.style():
+                figure = plot.draw_curve([softgrain.open(path)])
+            self.assertIn(f"[{unit}]", " ".join(axes.get_ylabel() for axes in figure.axes))
+            drawn = max(line.get_ydata().max() for axes in figure.axes for line in axes.lines if len(line.get_xdata()) > 2)
+            self.assertAlmostEqual(drawn * {"MPa": 1e6, "kPa": 1e3, "Pa": 1}[unit] / largest, 1, delta=0.1)
+
     def test_many_unloadings_have_their_range_of_slopes_on_the_page(self):
         path = self.write()
         strain = np.concatenate([[0], *(np.concatenate([np.linspace(k, k + 2, 20), np.linspace(k + 2, k + 1, 10)]) for k in range(12))]) / 100
@@ -293,7 +304,7 @@ class Pictures(Temporary):
         loud.particles["pressure"] = np.linspace(0, 2e6, 50)
         scale = Pressure([quiet, loud]).range
         self.assertEqual(scale.low, 0)
-        self.assertAlmostEqual(scale.high, 1.9, delta=0.1)
+        self.assertAlmostEqual(scale.high, 1.9e6, delta=0.1e6)
 
     def test_tension_and_pressure_are_coloured_symmetrically_about_zero(self):
         scale = Pressure([self.open()[0]]).range
@@ -304,7 +315,7 @@ class Pictures(Temporary):
         first, second = run[0], run[1]
         first.particles["pressure"] = np.full(len(first.particles["radius"]), -9e6)
         first.contacts.update(pair=np.empty((0, 2), int), force=np.empty(0))
-        self.assertLess(Pressure([first, second]).range.high, 2)
+        self.assertLess(Pressure([first, second]).range.high, 2e6)
 
     def test_layers_go_with_their_particles(self):
         run = self.open()

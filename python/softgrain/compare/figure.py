@@ -4,13 +4,17 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ..plot.style import BLUE, GREY, INK, MM, SINGLE_COLUMN, millimetres
+from ..stress_unit import unit_for
 
 HEIGHT = 90  # [mm]
 
 
 def draw_comparison(comparison, name, label):
     """`label` says what the curve is: the run's name, or that it was fitted."""
-    scale, unit = (1e6, "MPa") if name.startswith("stress") else (1, "N/m") if name.startswith("force") else (1, "")
+    if name.startswith("stress"):
+        unit, scale = unit_for(comparison.measured, comparison.run)
+    else:
+        unit, scale = "N/m" if name.startswith("force") else "", 1
     figure = Figure(figsize=(SINGLE_COLUMN * MM, HEIGHT * MM))
     upper, lower = figure.subplots(2, sharex=True, height_ratios=(2.2, 1))
     upper.plot(comparison.strain, comparison.measured / scale, "o", color=GREY, ms=2.2, mew=0, label="measured")

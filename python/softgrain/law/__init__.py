@@ -7,10 +7,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ..plot.style import BLUE, GREEN, GREY, INK, MM, SINGLE_COLUMN, VERMILLION, millimetres
+from ..stress_unit import unit_for
 
 HEIGHT = 100  # [mm]
 STRAINS = {"shear": r"shear strain $\gamma$"}  # of the other paths: the logarithmic strain along x
-MEGA = 1e-6
 
 
 def read_table(path) -> dict:
@@ -26,12 +26,13 @@ def draw_law(table, path, law):
     upper, lower = figure.subplots(2, sharex=True)
     main = ("stress_xy", r"$\sigma_{xy}$") if path == "shear" else ("stress_xx", r"$\sigma_{xx}$")
     curves = [(*main, BLUE, "-"), ("von_mises_stress", "von Mises", VERMILLION, "--"), ("pressure", "pressure", GREY, ":")]
+    unit = unit_for(*(table[column] for column, *_ in curves))
     for column, label, colour, line in curves:
-        upper.plot(table["strain"], MEGA * table[column], line, color=colour, label=label)
+        upper.plot(table["strain"], table[column] / unit.pascal, line, color=colour, label=label)
     for column, colour, line in (("work", INK, "-"), ("stored", GREEN, "--"), ("dissipated", VERMILLION, ":")):
-        lower.plot(table["strain"], MEGA * table[column], line, color=colour, label=column)
-    upper.set_ylabel("stress [MPa]")
-    lower.set_ylabel(r"energy [MJ/m$^3$]")
+        lower.plot(table["strain"], table[column] / unit.pascal, line, color=colour, label=column)
+    upper.set_ylabel(f"stress [{unit.name}]")
+    lower.set_ylabel(f"energy [{unit.name[:-2]}J/m$^3$]")
     lower.set_xlabel(STRAINS.get(path, r"logarithmic strain $\varepsilon_x$"))
     for axes in (upper, lower):
         axes.legend(loc="best")

@@ -11,6 +11,7 @@ from ..plot.rows import Forces, Pressure
 from ..plot.scene import draw_chains, draw_walls, extent
 from ..plot.stages import stage_at
 from ..plot.style import BLUE, DOUBLE_COLUMN, GREY, INK, MM, VERMILLION
+from ..stress_unit import unit_for
 
 HEIGHT = DOUBLE_COLUMN * 9 / 16  # of the page, as wide as screens are [mm]
 PICTURE = Bbox.from_extents(4, 4, 106, HEIGHT - 12)  # where the picture may lie [mm]
@@ -32,6 +33,7 @@ class Film:
         self.run = run
         self._measure([run[i] for i in colours.sampled(len(run))])
         self.stages = [stage_at(run.series, k, time) for k, time in enumerate(run.times)]
+        self.unit = unit_for([stage.stress or 0 for stage in self.stages])
         self.figure, self.axes = page(DOUBLE_COLUMN, HEIGHT)
         self.canvas = FigureCanvasAgg(self.figure)
         self.figure.set_dpi(width / (DOUBLE_COLUMN * MM))
@@ -53,7 +55,7 @@ class Film:
         self._draw_picture(snapshot)
         self.clock.set_text(self._words(snapshot, stage))
         if self.point is not None:
-            self.point.set_data([stage.strain], [stage.stress / 1e6])
+            self.point.set_data([stage.strain], [stage.stress / self.unit.pascal])
             self.past.set_data(*self._curve_until(snapshot.time))
         self.canvas.draw()
         pixels = np.asarray(self.canvas.buffer_rgba())[..., :3]
@@ -69,7 +71,7 @@ class Film:
 
     @property
     def range(self):
-        """Of the colours [MPa]."""
+        """Of the colours [Pa]."""
         return self.pressure.range
 
     def _measure(self, sampled):
@@ -107,13 +109,13 @@ class Film:
     def _draw_curve(self):
         """The whole curve, pale; what has been of it; the present point."""
         series = self.run.series
-        self.stress = measure.vertical_stress(series) / 1e6
+        self.stress = measure.vertical_stress(series) / self.unit.pascal
         page_size = np.array([DOUBLE_COLUMN, HEIGHT])
         axes = self.figure.add_axes((*(CURVE.min / page_size), *(CURVE.size / page_size)))
         axes.plot(series["strain"], self.stress, color=GREY, lw=0.5, alpha=0.6)
         self.past, = axes.plot([], [], color=BLUE, lw=1)
         self.point, = axes.plot([], [], "o", color=VERMILLION, ms=5, mec=INK, mew=0.4, zorder=3, clip_on=False)
-        axes.set(xlabel=r"strain $\varepsilon$", ylabel=r"vertical stress $\sigma$ [MPa]", ylim=(min(0, self.stress.min()), None))
+        axes.set(xlabel=r"strain $\varepsilon$", ylabel=rf"vertical stress $\sigma$ [{self.unit.name}]", ylim=(min(0, self.stress.min()), None))
 
     def _curve_until(self, time):
         rows = np.searchsorted(self.run.series["time"], time, side="right")
@@ -123,5 +125,5 @@ class Film:
         unit, factor = next(((u, f) for u, f in (("s", 1), ("ms", 1e3)) if self.run.times[-1] * f >= 1), ("µs", 1e6))
         words = [f"$t$ = {snapshot.time * factor:.2f} {unit}"]
         words += [] if stage.strain is None else [rf"$\varepsilon$ = {stage.strain + 0:.3f}"]
-        words += [] if stage.stress is None else [rf"$\sigma$ = {stage.stress / 1e6 + 0:.3f} MPa"]
+        words += [] if stage.stress is None else [rf"$\sigma$ = {self.unit.text(stage.stress)}"]
         return "      ".join(words)

@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import NotRecorded, measure
+from ..stress_unit import StressUnit, unit_for
 from .style import BLUE, GREEN, GREY, INK, MM, PURPLE, RUN_COLOURS, SINGLE_COLUMN, VERMILLION, millimetres
 
 HEIGHT = 62  # [mm]
@@ -23,7 +24,8 @@ class Curve:
     label: str
     strain: np.ndarray
     stress: np.ndarray  # in units of `scale`
-    scale: float  # 1 MPa, or sigma_I [Pa]
+    scale: float  # that unit, or sigma_I [Pa]
+    unit: StressUnit  # of the words
     characteristic_stress: float | None  # sigma_I [Pa]
     plateau: measure.Plateau | None  # of a bonded grain between walls; all other stresses rise all the way
     direction: np.ndarray | None = None  # of each step from a sample to the next, as measure.directions
@@ -34,7 +36,8 @@ class Curve:
 def draw_curve(runs, labels=None, normalise=False):
     """sigma(eps): thin line, the samples; thick line, their mean over 1 % of strain; sigma_I; the plateau."""
     labels = labels or [run.name for run in runs]
-    curves = [_curve(run, label, normalise) for run, label in zip(runs, labels)]
+    unit = unit_for(*(measure.vertical_stress(run.series) for run in runs))
+    curves = [_curve(run, label, normalise, unit) for run, label in zip(runs, labels)]
     characteristic = _common_characteristic_stress(curves)
     figure = Figure(figsize=(SINGLE_COLUMN * MM, HEIGHT * MM))
     axes, upper_axes = _axes(figure, curves, characteristic)
@@ -43,9 +46,9 @@ def draw_curve(runs, labels=None, normalise=False):
     else:
         _draw_overlay(axes, curves)
     if characteristic is not None:
-        _draw_characteristic_stress(upper_axes, characteristic, normalise, all(c.in_space for c in curves))
+        _draw_characteristic_stress(upper_axes, characteristic, unit, normalise, all(c.in_space for c in curves))
     axes.set_xlabel(r"cumulative axial strain $\varepsilon$")
-    axes.set_ylabel(r"vertical stress $\sigma/\sigma_I$" if normalise else r"vertical stress $\sigma$ [MPa]")
+    axes.set_ylabel(r"vertical stress $\sigma/\sigma_I$" if normalise else rf"vertical stress $\sigma$ [{unit.name}]")
     axes.set_xlim(0, max(c.strain.max() for c in curves) * 1.02 or 0.01)
     entries = axes.get_legend_handles_labels()
     if upper_axes is not axes:
@@ -57,7 +60,7 @@ def draw_curve(runs, labels=None, normalise=False):
     return figure
 
 
-def _curve(run, label, normalise):
+def _curve(run, label, normalise, unit):
     stress = measure.vertical_stress(run.series)
     sigma_i = measure.characteristic_stress(run)
     if "strain" not in run.series:
@@ -65,10 +68,11 @@ def _curve(run, label, normalise):
     if normalise and sigma_i is None:
         raise NotRecorded(f"{run.path}: elastic grains have no sigma_I" if run.elastic else
                           f"{run.path}: sigma_I needs bpm.attraction in the case and a snapshot")
-    scale = sigma_i if normalise else 1e6
+    scale = sigma_i if normalise else unit.pascal
     strain, packing = run.series["strain"], "phi" in run.series
     flat = None if packing or run.elastic else measure.plateau(strain, stress / scale)
-    return Curve(label, strain, stress / scale, scale, sigma_i, flat, measure.directions(run.series), run.elastic and not packing, run.in_space)
+    return Curve(label, strain, stress / scale, scale, unit, sigma_i, flat, measure.directions(run.series), run.elastic and not packing,
+                 run.in_space)
 
 
 def _common_characteristic_stress(curves):
@@ -144,7 +148,7 @@ def _draw_plateau(axes, curve):
 def _slopes(curve):
     """", slope 3.6 MPa" of each unloading, of many their range; elastic grains unload as they were loaded."""
     slopes = [] if curve.elastic_grain else [u.slope for u in measure.unloadings(curve.strain, curve.stress, curve.direction)]
-    unit = r"$\,\sigma_I$" if curve.scale == curve.characteristic_stress else " MPa"
+    unit = r"$\,\sigma_I$" if curve.scale == curve.characteristic_stress else f" {curve.unit.name}"
     few = len(slopes) <= MOST_SLOPES
     words = (", " if few else " to ").join(f"{slope:.{1 if slope < 10 else 0}f}" for slope in (slopes if few else (min(slopes), max(slopes))))
     return f", {'' if few else f'{len(slopes)} '}slope{'s' if len(slopes) > 1 else ''} {words}{unit}" if slopes else ""
@@ -160,15 +164,15 @@ def _draw_overlay(axes, curves):
 
 
 def _stress_text(stress, curve):
-    """A stress in MPa and as a share of sigma_I, as far as each is known."""
+    """A stress in its unit and as a share of sigma_I, as far as each is known."""
     pascal = stress * curve.scale
-    text = f"{pascal / 1e6:.3f} MPa"
+    text = curve.unit.text(pascal)
     if curve.characteristic_stress is None:
         return text
     return rf"{text} = {pascal / curve.characteristic_stress:.2f}$\,\sigma_I$"
 
 
-def _draw_characteristic_stress(axes, value, normalise, in_space):
+def _draw_characteristic_stress(axes, value, unit, normalise, in_space):
     """The line at sigma_I = F0/<a0>, the paper's characteristic stress; in space F0/<a0>^2."""
-    equals = "" if normalise else f" = {value:.2f} MPa"
+    equals = "" if normalise else f" = {value:.2f} {unit.name}"
     axes.axhline(value, color=GREY, lw=0.8, ls=(0, (1, 1.2)), label=rf"$\sigma_I = F_0/\langle a_0\rangle{'^2' if in_space else ''}${equals}")

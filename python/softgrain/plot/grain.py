@@ -4,7 +4,7 @@ from .. import NotRecorded, colours
 from .layout import panel_grid
 from .rows import rows_of
 from .scene import draw_walls, extent
-from .stages import choose_stages
+from .stages import choose_stages, headings
 
 WALL = 0.05  # thickness of a wall over the grain's height at the start
 
@@ -28,8 +28,8 @@ def draw_grain(run, rows=None):
             draw_walls(panel, snapshots[place], wall)
         view.draw_key(grid, row)
         grid.add_row_name(row, view.name)
-    for column, stage in enumerate(stages):
-        grid.add_heading(column, _heading("abcdef"[column], stage))
+    for column, words in enumerate(headings(stages)):
+        grid.add_heading(column, words)
     return grid.figure
 
 
@@ -38,9 +38,3 @@ def _view(row, snapshots):
         return row(snapshots)
     except NotRecorded:
         return None
-
-
-def _heading(letter, stage):
-    lines = [] if stage.strain is None else [rf"$\varepsilon$ = {stage.strain + 0:.3f}"]
-    lines += [] if stage.stress is None else [rf"$\sigma$ = {stage.stress / 1e6:.3f} MPa"]
-    return f"({letter})  " + "\n".join(lines)

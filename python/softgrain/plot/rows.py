@@ -11,6 +11,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.lines import Line2D
 
 from .. import NotRecorded, colours, picture
+from ..stress_unit import unit_for
 from .scene import draw_chains, draw_polygons, draw_surface
 from .style import GREY, PALE, POINT
 
@@ -52,17 +53,18 @@ class Pressure:
 
     @staticmethod
     def _surface(snapshot):
-        """Values in MPa; nan before the first step."""
-        values = picture.pressure(snapshot) / 1e6
+        """Values in Pa; nan before the first step."""
+        values = picture.pressure(snapshot)
         return picture.surface(snapshot, values if picture.has_forces(snapshot) else np.full_like(values, np.nan))
 
     def draw_key(self, grid, row):
         axes = grid.add_key_axes(row, width=2, height=0.75)
         ramp = LinearSegmentedColormap.from_list(self.range.map, colours.colours_of(self.range.map))
-        scale = ScalarMappable(Normalize(self.range.low, self.range.high), ramp)
+        unit = unit_for(self.range.low, self.range.high)
+        scale = ScalarMappable(Normalize(self.range.low / unit.pascal, self.range.high / unit.pascal), ramp)
         extend = {0.0: "max"}.get(self.range.low, "both" if self.range.high else "min")
         bar = grid.figure.colorbar(scale, cax=axes, extend=extend, extendfrac=0.04)
-        bar.set_label(f"{self.name} [MPa]", labelpad=2)
+        bar.set_label(f"{self.name} [{unit.name}]", labelpad=2)
         bar.outline.set_linewidth(0.5)
         axes.tick_params(direction="out", length=2, pad=2)
 

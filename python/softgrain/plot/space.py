@@ -7,7 +7,8 @@ from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 
 from .. import NotRecorded, colours, view
-from .stages import choose_stages
+from ..stress_unit import unit_for
+from .stages import choose_stages, headings
 from .style import DOUBLE_COLUMN, GREY, MM
 
 MOST_PANELS = 4
@@ -27,27 +28,29 @@ def draw_space(run):
     height = min(width * (y1 - y0) / (x1 - x0), 120)
     figure = Figure(figsize=(DOUBLE_COLUMN * MM, (height + HEADING) * MM))
     page = DOUBLE_COLUMN, height + HEADING
-    for column, (stage, snapshot) in enumerate(snapshots):
+    for column, (words, (_, snapshot)) in enumerate(zip(headings([stage for stage, _ in snapshots]), snapshots)):
         axes = figure.add_axes((column * width / page[0], 0, width / page[0], height / page[1]))
         axes.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal")
         axes.set_axis_off()
         draw_surfaces(axes, snapshot, range_)
-        figure.text((column + 0.5) * width / page[0], 0.99, _heading("abcd"[column], stage), ha="center", va="top")
+        figure.text((column + 0.5) * width / page[0], 0.99, words, ha="center", va="top")
     add_key(figure, range_, ((DOUBLE_COLUMN - KEY + 1) / page[0], 0.15, 2.5 / page[0], 0.6))
     return figure
 
 
 def range_of_pressures(snapshots):
-    """One range of colours [MPa] for all of them, without the outermost 1 %. Raises NotRecorded where none has surfaces."""
+    """One range of colours [Pa] for all of them, without the outermost 1 %. Raises NotRecorded where none has surfaces."""
     pressures = [snapshot.surface["pressure"] for snapshot in view.with_surfaces(snapshots)]
-    low, high = np.quantile(np.concatenate(pressures) / 1e6, (0.01, 0.99))
-    return colours.Range("viridis", min(0.0, low), max(high, 1e-12))
+    low, high = np.quantile(np.concatenate(pressures), (0.01, 0.99))
+    return colours.Range("viridis", min(0.0, low), max(high, 1e-6))
 
 
 def add_key(figure, range_, place):
     """The colours and their pressures, at (x, y, width, height) as shares of the figure."""
     shades = ListedColormap(range_.rgb(np.linspace(range_.low, range_.high, 256)))
-    figure.colorbar(ScalarMappable(Normalize(range_.low, range_.high), shades), cax=figure.add_axes(place), label="pressure [MPa]")
+    unit = unit_for(range_.low, range_.high)
+    scale = Normalize(range_.low / unit.pascal, range_.high / unit.pascal)
+    figure.colorbar(ScalarMappable(scale, shades), cax=figure.add_axes(place), label=f"pressure [{unit.name}]")
 
 
 def draw_surfaces(axes, snapshot, range_, **look):
@@ -58,11 +61,5 @@ def draw_surfaces(axes, snapshot, range_, **look):
     else:
         axes.add_collection(PolyCollection(walls, facecolors="#DDDDDD", edgecolors=GREY, linewidths=0.4, **look))
     faces = view.faces(snapshot)
-    colour = range_.rgb(snapshot.surface["pressure"][faces.quad] / 1e6) * faces.shade[:, None]
+    colour = range_.rgb(snapshot.surface["pressure"][faces.quad]) * faces.shade[:, None]
     axes.add_collection(PolyCollection(faces.corners, facecolors=colour, edgecolors=colour, linewidths=0.15, **look))
-
-
-def _heading(letter, stage):
-    lines = [] if stage.strain is None else [rf"$\varepsilon$ = {stage.strain + 0:.3f}"]
-    lines += [] if stage.stress is None else [rf"$\sigma$ = {stage.stress / 1e6:.3f} MPa"]
-    return f"({letter})  " + "\n".join(lines)

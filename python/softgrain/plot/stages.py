@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import measure
+from ..stress_unit import unit_for
 
 MOST_STAGES = 6
 
@@ -13,6 +14,17 @@ class Stage(NamedTuple):
     snapshot: int
     strain: float | None  # None if series.csv does not say
     stress: float | None  # [Pa]
+
+
+def headings(stages):
+    """One for each: its letter, strain and stress, all stresses in one unit."""
+    unit = unit_for([stage.stress or 0 for stage in stages])
+    return [f"({letter})  " + "\n".join(_words(stage, unit)) for letter, stage in zip("abcdef", stages)]
+
+
+def _words(stage, unit):
+    words = [] if stage.strain is None else [rf"$\varepsilon$ = {stage.strain + 0:.3f}"]
+    return words + ([] if stage.stress is None else [rf"$\sigma$ = {unit.text(stage.stress)}"])
 
 
 def choose_stages(run, times):
