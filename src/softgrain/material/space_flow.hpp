@@ -1,50 +1,70 @@
 #pragma once
 #include "softgrain/material/principal_stretches.hpp"
+#include "softgrain/math/sym_log.hpp"
 
 namespace softgrain {
 
-/// Elastic logarithmic strains of a point in space, F = F_e F_p, from F and G = F_p^-1: F_e = F G has the
-/// principal stretches s_a = exp(e_a), e_a = e'_a + ln J/3, as flow keeps the volume.
+/// Elastic logarithmic strain of a point in space, F = F_e F_p, from F and G = F_p^-1: ln sqrt(F_e^T F_e),
+/// F_e = F G, is e' + ln J/3, as flow keeps the volume. A tensor in the axes of the flowed material, without
+/// eigenvectors.
 template <class T>
 struct SpaceTrial {
-  PrincipalFrame<T> frame;  ///< of F_e
-  Mat<3, T> G;
-  Vec<3, T> e, deviator;  ///< e_a, e'_a
-  T log_J;
+  Mat<3, T> F_e, G;
+  Mat<3, T> cof;       ///< of F_e
+  Mat<3, T> deviator;  ///< e'
+  T inverse_J, log_J;
 
-  T square() const { return dot(deviator, deviator); }  ///< |e'|^2
+  T square() const { return contract(deviator, deviator); }  ///< |e'|^2
 };
 
 template <class T>
 SpaceTrial<T> space_trial(const Mat<3, T>& F, const Mat<3, T>& G) {
-  SpaceTrial<T> trial{principal_frame(F * G), G, {}, {}, {}};
-  for (int a = 0; a < 3; ++a) trial.e[a] = log(trial.frame.stretch[a]);
-  trial.log_J = trial.e[0] + trial.e[1] + trial.e[2];
-  for (int a = 0; a < 3; ++a) trial.deviator[a] = trial.e[a] - (1.0 / 3.0) * trial.log_J;
+  SpaceTrial<T> trial;
+  trial.F_e = F * G;
+  trial.G = G;
+  const Mat<3, T>& F_e = trial.F_e;
+  trial.cof = cofactor(F_e);
+  const T J = F_e(0, 0) * trial.cof(0, 0) + F_e(0, 1) * trial.cof(0, 1) + F_e(0, 2) * trial.cof(0, 2);
+  trial.inverse_J = 1.0 / J;
+  trial.log_J = log(J);
+  const T shape = exp((-2.0 / 3.0) * trial.log_J);
+  Mat<3, T> C;  // F_e^T F_e / J^(2/3)
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j)
+      C(i, j) = C(j, i) = shape * (F_e(0, i) * F_e(0, j) + F_e(1, i) * F_e(1, j) + F_e(2, i) * F_e(2, j));
+  trial.deviator = 0.5 * sym_log(C);
   return trial;
 }
 
-/// P of Kirchhoff's stress tau_a = bulk ln J + 2 shear e'_a [Pa].
+/// P of Kirchhoff's stress bulk ln J 1 + 2 shear e' [Pa], e' in the axes of space.
 template <class T>
 Mat<3, T> stress_of(const SpaceTrial<T>& trial, double bulk, const T& shear) {
-  // P = (sum_a tau_a/s_a u_a (x) v_a) G^T
-  Vec<3, T> first;
-  for (int a = 0; a < 3; ++a)
-    first[a] = (bulk * trial.log_J + 2.0 * shear * trial.deviator[a]) / trial.frame.stretch[a];
-  return trial.frame.u * Mat<3, T>::diagonal(first) * transpose(trial.G * trial.frame.v);
+  // P = F_e^-T M G^T, M = bulk ln J 1 + 2 shear e' in the axes of the flowed material
+  Mat<3, T> M = (2.0 * shear) * trial.deviator;
+  for (int k = 0; k < 3; ++k) M(k, k) += bulk * trial.log_J;
+  return trial.cof * ((trial.inverse_J * M) * transpose(trial.G));
 }
 
 /// dP/dF of the same, with dtau/de = bulk 1 (x) 1 + 2 (shear dev + turn n (x) n), n = e'/|e'| [Pa].
 template <class T>
 Mat<9, T> tangent_of(const SpaceTrial<T>& trial, double bulk, const T& shear, const T& turn) {
+  const SymEigen<3, T> deviator = sym_eigen(trial.deviator);
   const T inverse = 1.0 / max(trial.square(), T(1e-20));
+  PrincipalResponse<T> response{.frame = {{}, trial.F_e * deviator.vectors, deviator.vectors},
+                                .first = {},
+                                .second = {},
+                                .quotient = {}};
+  Vec<3, T> e;
   Mat<3, T> D;
-  for (int a = 0; a < 3; ++a)
+  for (int a = 0; a < 3; ++a) {
+    e[a] = deviator.values[a] + (1.0 / 3.0) * trial.log_J;
+    T& stretch = response.frame.stretch[a] = exp(e[a]);
+    for (int i = 0; i < 3; ++i) response.frame.u(i, a) = response.frame.u(i, a) / stretch;
     for (int b = 0; b < 3; ++b)
       D(a, b) = bulk + 2.0 * (shear * ((a == b) - 1.0 / 3.0) +
-                              turn * inverse * trial.deviator[a] * trial.deviator[b]);
-  PrincipalResponse<T> response{.frame = trial.frame, .first = {}, .second = {}, .quotient = {}};
-  differentiate(response, trial.e, shear, (bulk - 2.0 / 3.0 * shear) * trial.log_J, D);
+                              turn * inverse * deviator.values[a] * deviator.values[b]);
+  }
+  differentiate(response, e, shear, (bulk - 2.0 / 3.0 * shear) * trial.log_J, D);
   const Mat<9, T> A_e = tangent_of(response);
   // A_iJkL = (A_e)_iMkN G_JM G_LN, one index after the other.
   const Mat<3, T>& G = trial.G;
@@ -60,13 +80,10 @@ Mat<9, T> tangent_of(const SpaceTrial<T>& trial, double bulk, const T& shear, co
   return A;
 }
 
-/// G after a flow that leaves e' <- share e': G sum_a exp((share - 1) e'_a) v_a (x) v_a.
+/// G after a flow that leaves e' <- share e': G exp((share - 1) e').
 template <class T>
 Mat<3, T> flowed(const SpaceTrial<T>& trial, const T& share) {
-  Vec<3, T> shrink;
-  for (int a = 0; a < 3; ++a) shrink[a] = exp((share - 1.0) * trial.deviator[a]);
-  const Mat<3, T>& v = trial.frame.v;
-  return trial.G * (v * Mat<3, T>::diagonal(shrink) * transpose(v));
+  return trial.G * sym_exp((share - 1.0) * trial.deviator);
 }
 
 }  // namespace softgrain

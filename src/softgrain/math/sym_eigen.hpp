@@ -12,14 +12,14 @@ struct SymEigen {
 };
 
 namespace detail {
-/// Jacobi's rotation in the plane (p, q) that makes m(p, q) zero.
-template <int N, class T>
-void rotate(int p, int q, Mat<N, T>& m, Mat<N, T>& vectors) {
+/// Jacobi's rotation in the plane (p, q) that makes m(p, q) zero, of the lanes that still move.
+template <int N, class T, class Mask>
+void rotate(int p, int q, const Mask& moves, Mat<N, T>& m, Mat<N, T>& vectors) {
   const T zero(0.0), one(1.0);
   // tan of the angle: t^2 + 2 theta t - 1 = 0, the root with |t| <= 1; t = 0 where nothing is to be done.
   const T theta = (m(q, q) - m(p, p)) / (2.0 * m(p, q));
   const T size = 1.0 / (max(theta, -theta) + sqrt(theta * theta + 1.0));
-  const T t = select(max(m(p, q), -m(p, q)) > zero, select(theta < zero, -size, size), zero);
+  const T t = select(moves & (max(m(p, q), -m(p, q)) > zero), select(theta < zero, -size, size), zero);
   const T cosine = one / sqrt(t * t + 1.0), sine = t * cosine;
   const T change = t * m(p, q);
   m(p, p) -= change;
@@ -54,17 +54,18 @@ T diagonal_size(const Mat<N, T>& m) {
 }  // namespace detail
 
 /// Eigenvalues and eigenvectors of a symmetric matrix by Jacobi's rotations: to round-off of the largest
-/// eigenvalue, equal eigenvalues included. All lanes rotate until the last one is done. Not-a-number in: the
-/// same out, without an error.
+/// eigenvalue, equal eigenvalues included. Lanes do not see one another: one that is done moves no more.
+/// Not-a-number in: the same out, without an error.
 template <int N, class T>
 SymEigen<N, T> sym_eigen(Mat<N, T> m) {
   constexpr int max_sweeps = 12;  // 3 x 3 matrices need 4 to 6
   SymEigen<N, T> result;
   for (int k = 0; k < N; ++k) result.vectors(k, k) = T(1.0);
   for (int sweep = 0; sweep < max_sweeps; ++sweep) {
-    if (all(detail::off_diagonal_size(m) <= 1e-17 * detail::diagonal_size(m))) break;
+    const auto moves = detail::off_diagonal_size(m) > 1e-17 * detail::diagonal_size(m);
+    if (!any(moves)) break;
     for (int p = 0; p < N; ++p)
-      for (int q = p + 1; q < N; ++q) detail::rotate(p, q, m, result.vectors);
+      for (int q = p + 1; q < N; ++q) detail::rotate(p, q, moves, m, result.vectors);
   }
   for (int k = 0; k < N; ++k) result.values[k] = m(k, k);
   return result;
