@@ -73,6 +73,7 @@ void print_json(const CaseReading& reading, const Estimate& estimate, const Advi
                                         {"inertial_number", advice.inertial_number},
                                         {"stress", advice.stress},
                                         {"blow", advice.blow},
+                                        {"mach", advice.mach},
                                         {"hold", finite(advice.hold)},
                                         {"cohesive_zone", finite(adhesion.zone)}}},
                                       {"without_effect", reading.without_effect},
@@ -125,6 +126,9 @@ void print_advice_on_adhesion(const Case& the_case) {
 /// Of Advice::blow, for grains that are pressed.
 constexpr double most_of_a_blow = 0.1;
 
+/// Of Advice::mach, for grains that are not crushed by the first wave.
+constexpr double most_of_mach = 0.3;
+
 /// Of Advice::imbalance, for what springs back to be right.
 constexpr double most_of_an_imbalance = 0.03;
 
@@ -146,6 +150,12 @@ void print_advice(const Advice& advice, double newton_tolerance) {
                "warning: walls at this speed strike with rho c v = {:.2g} times the yield stress, and points "
                "may turn inside out: lower loading.wall_velocity to below {:.1g} of what it is\n",
                advice.blow, most_of_a_blow / advice.blow);
+  if (advice.mach > most_of_mach)
+    fmt::print(
+        stderr,
+        "warning: the walls move at {:.2g} times the speed of pressure waves in the grains, and points "
+        "may turn inside out: lower loading.wall_velocity to below {:.1g} of what it is\n",
+        advice.mach, most_of_mach / advice.mach);
   if (advice.imbalance > most_of_an_imbalance)
     fmt::print(
         stderr,

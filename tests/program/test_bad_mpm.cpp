@@ -37,6 +37,7 @@ TEST_CASE("soft grains that cannot be are refused with the key, the value and wh
            {"mpm.poisson_ratio=0.5", "0.5", "it must be in (-1, 0.5)"},
            {"mpm.poisson_ratio=0.7", "0.7", "it must be in (-1, 0.5)"},
            {"mpm.cells=1", "1", "it must be in [2, 200]"},
+           {"mpm.tolerance=10", "10", "it must be in (0, 0.01]; the default is 0.0001"},
            {"mpm.law=\"rubber\"", "'rubber'", "takes one of \"neo_hookean\""},
            {"mpm.integrator=\"newmark\"", "'newmark'", "takes one of \"implicit\", \"explicit\""},
            {"sample.packing_fraction=0.9", "0.9", "it must be in (0, 0.8)"},

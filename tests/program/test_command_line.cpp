@@ -171,6 +171,18 @@ TEST_CASE("check prints the resolved case on stdout and the estimate on stderr")
   CHECK(second.out == first.out);
 }
 
+TEST_CASE("check warns of walls that are as fast as sound in the grains") {
+  const TemporaryDirectory directory;
+  for (const auto& [speed, warns] : {std::pair{"0.1 m/s", false}, {"2 m/s", true}}) {
+    const auto result = softgrain_program(
+        {"check",
+         directory.file("case.toml", "[experiment]\nmodel = \"mpm\"\n[mpm]\nyoung_modulus = \"1 kPa\"\n"),
+         "--set", std::string("loading.wall_velocity=\"") + speed + "\""});
+    CHECK(result.exit_code == 0);
+    CHECK(mentions(result.err, "times the speed of pressure waves in the grains") == warns);
+  }
+}
+
 TEST_CASE("check --json gives the case and the estimate to machines") {
   const TemporaryDirectory directory;
   const auto result =

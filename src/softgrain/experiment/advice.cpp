@@ -133,6 +133,7 @@ Advice advise(const Case& c) {
     advice.inertial_number = rate * inertial_time(c);
   }
   advice.blow = blow_of(c);
+  if (const double wave = wave_of(c); wave > 0) advice.mach = c.loading.wall_velocity / wave;
   advice.imbalance = imbalance_of(c);
   advice.hold = hold_of(c);
   return advice;

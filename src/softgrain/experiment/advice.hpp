@@ -21,6 +21,9 @@ struct Advice {
   /// rho c v over the yield stress, v the speed of the walls, of grains that flow: the stress of a blow with
   /// that speed. Below 0.1 the grains are pressed, from 1 on they are struck. 0 where nothing yields.
   double blow = 0;
+  /// v/c, v the speed of the walls and c that of pressure waves in the grains: the strain behind a wave that
+  /// the walls send out. From some tenths on grains are crushed before the next one feels it.
+  double mach = 0;
   /// mpm.tolerance times E over the yield stress, of grains that flow in implicit steps: how far from balance
   /// Newton's method may leave them, by its last correction over R. 0 where nothing yields.
   double imbalance = 0;

@@ -158,10 +158,9 @@ void require_solid(const GrainMaterial& material) {
   if (material.rigid) return;
   std::visit(
       []<class Law>(const Law&) {
-        require(
-            is_solid<Law>(),
-            "not yet: this law of the material knows no grains in space; take neo_hookean, another elastic "
-            "and objective one, prony, norton, or von_mises without kinematic_modulus");
+        require(is_solid<Law>(),
+                "not yet: this mpm.law knows no grains in space; take neo_hookean, another elastic "
+                "and objective one, prony, norton, or von_mises without kinematic_modulus");
       },
       material.law);
 }

@@ -17,6 +17,7 @@ using namespace scope;
 Range anything() { return {}; }
 Range its_words() { return {}; }
 Range positive() { return {.low = 0, .without_low = true}; }
+Range positive_up_to(double high) { return {.low = 0, .high = high, .without_low = true}; }
 Range at_least(double low) { return {.low = low}; }
 Range from_to(double low, double high) { return {.low = low, .high = high}; }
 Range between(double low, double high) {
@@ -104,7 +105,7 @@ std::vector<Key> all_keys() {
       KEY(mpm.damping, "1/s", at_least(0),
           "rate zeta of the damping f = -zeta m (v - v_walls), v_walls the velocity that the walls give to what lies "
           "between them; 0: none; a free grain slows down by exp(-zeta t)", with_outlines),
-      KEY(mpm.tolerance, "", positive(), "largest last correction of Newton's method over the mean grain radius", implicit),
+      KEY(mpm.tolerance, "", positive_up_to(0.01), "largest last correction of Newton's method over the mean grain radius", implicit),
 
       KEY(contact.friction, "", at_least(0),
           "coefficient of friction mu between grains; never inside one: bpm.inner_friction", with_pairs),
