@@ -155,9 +155,10 @@ struct VonMises {
   };
   template <class T>
   static Advanced<3, T> advanced(const SpaceStep<T>& step, const State<3, T>& state) {
-    const Mat<3, T> G = flowed(step.trial, step.share);
     const auto flows = step.flow.increment > T(0.0);
     Advanced<3, T> after{state, step.flow.dissipated};
+    if (!any(flows)) return after;
+    const Mat<3, T> G = flowed(step.trial, step.share);
     for (std::size_t k = 0; k < 9; ++k) after.state[k] = select(flows, G.c[k], state[k]);
     after.state.back() = state.back() + step.flow.increment;
     return after;

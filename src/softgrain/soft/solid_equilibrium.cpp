@@ -97,12 +97,16 @@ template <class Law, class Deviatoric>
   Wide least = 1.0;
   for_each_cell(batch, [&](const BrickState& cell) {
     const std::array<Wide, 8> theta = cell.thetas(law, mean_dilatation);
+    std::array<Wide, 8> pressure;  // U'(theta)
+    if (mean_dilatation)
+      pressure.fill(law.volume().derivative(theta[0]));
+    else
+      for (std::size_t p = 0; p < 8; ++p) pressure[p] = law.volume().derivative(theta[p]);
     for (std::size_t p = 0; p < 8; ++p) {
       const WideSolid& F = cell.F[p];
       const Wide J = determinant(F);
       least = select(J > 0.0, least, J);
-      const WideSolid P = deviatoric(cell, static_cast<int>(p)) +
-                          law.volume().derivative(theta[p]) * law.dilatation().gradient(F);
+      const WideSolid P = deviatoric(cell, static_cast<int>(p)) + pressure[p] * law.dilatation().gradient(F);
       for (std::size_t a = 0; a < 8; ++a) {
         const Vec<3> g = cell.points[p].volume * cell.points[p].gradient[a];
         Vec<3, Wide>& f = force[static_cast<std::size_t>(cell.nodes[a])];
