@@ -92,11 +92,24 @@ SurfaceContact contact_with_patch(const Surfaces& surfaces, const SurfaceContact
   SurfaceContact contact = point;
   set_image(contact, nearest, surfaces.state);
   const Vec<3> x = at - contact.image;
-  const bool has_edges = surfaces.grains.topology(grain).rigid_shape();
+  const SolidTopology& topology = surfaces.grains.topology(grain);
+  const bool has_edges = topology.rigid_shape();
   FacesOfEdge edge;
   Vec<3> way;  // to the nearest place
   bool inside = false;
   double least = std::numeric_limits<double>::infinity();
+  const auto look_at = [&](const SurfacePatch& patch, int index, double u, double v) {
+    const auto found = patch.nearest(x, u, v);
+    const auto place = patch.at(found.u, found.v);
+    const Vec<3> d = x - place.place;
+    if (has_edges && !found.inside) edge.add(d, place.normal());
+    if (dot(d, d) >= least) return;
+    least = dot(d, d);
+    way = d, inside = found.inside;
+    contact.normal = place.normal();
+    contact.gap = dot(d, contact.normal);
+    set_master(contact, topology.patches[index], surfaces.grains.outline_begin(grain), found.u, found.v);
+  };
   for (const FacingPatch& facing : patches_facing(surfaces, grain, nearest, x)) {
     const SurfacePatch patch = surfaces.patch(grain, facing.patch);
     const double u = std::abs(facing.u - 0.3), v = std::abs(facing.v - 0.3);
@@ -105,20 +118,18 @@ SurfaceContact contact_with_patch(const Surfaces& surfaces, const SurfaceContact
       contact.gap = dot(x - beside.place, beside.normal());
       if (contact.gap > far) return contact;
     }
-    const auto found = patch.nearest(x, u, v);
-    const auto place = patch.at(found.u, found.v);
-    const Vec<3> d = x - place.place;
-    if (has_edges && !found.inside) edge.add(d, place.normal());
-    if (dot(d, d) >= least) continue;
-    least = dot(d, d);
-    way = d, inside = found.inside;
-    contact.normal = place.normal();
-    contact.gap = dot(d, contact.normal);
-    set_master(contact, surfaces.grains.topology(grain).patches[facing.patch],
-               surfaces.grains.outline_begin(grain), found.u, found.v);
-    if (found.inside) break;
+    look_at(patch, facing.patch, u, v);
+    if (inside) break;
   }
   if (has_edges && !inside) edge.set_normal(way, surfaces.reach, contact);
+  // So deep in a soft grain no contact lets it come: the point is in front of a fin that has been squeezed
+  // out, and its nearest vertex is on the other side.
+  constexpr double deep = 0.1;
+  if (!has_edges && contact.gap < -deep * surfaces.segment)
+    for (int q = 0; q < static_cast<int>(topology.patches.size()); ++q)
+      if (const SurfacePatch patch = surfaces.patch(grain, q);
+          norm(x - patch.at(0.5, 0.5).place) < std::sqrt(least) + 1.5 * surfaces.reach)
+        look_at(patch, q, 0.5, 0.5);
   return contact;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "softgrain/soft/facing_surface.hpp"
 #include "softgrain/soft/rigid_surface.hpp"
 #include "softgrain/soft/solid_topology.hpp"
 #include "support/meshes.hpp"
@@ -187,4 +188,27 @@ TEST_CASE("impulses go over to the contacts that are found next, in their own ax
   REQUIRE(now.size() == old.size());
   for (std::size_t c = 0; c < now.size(); ++c)
     CHECK(norm(impulse_vector(now[c], carried[c]) - impulse_vector(old[c], impulse[c])) < 1e-13);
+}
+
+TEST_CASE("a point in front of a thin fin meets its near side, whichever side its nearest vertex is on") {
+  TwoBalls balls(0, 6);
+  constexpr double thickness = 0.02;
+  const int vertices = balls.grains.outline_end(0);
+  std::vector<int> behind;
+  for (int v = 0; v < vertices; ++v) {
+    double& z = balls.state.position[v][2];
+    if (z < -0.8) behind.push_back(v);
+    z *= thickness;
+  }
+  const Surfaces surfaces(balls.grains, balls.state);
+  const int of_other = vertices;
+  REQUIRE(behind.size() > 10);
+  for (const int nearest : behind) {
+    const Vec<3> below = balls.state.position[nearest], at{below[0] + 0.02, below[1] - 0.01, 0.06};
+    const SurfaceContact contact =
+        contact_with_patch(surfaces, {.point = of_other, .vertex = of_other}, at, 0, nearest, 1);
+    const double height = thickness * std::sqrt(1 - at[0] * at[0] - at[1] * at[1]);  // of the spheroid
+    CHECK(std::abs(contact.gap - (at[2] - height)) < 1e-3);
+    CHECK(contact.normal[2] > 0.99);
+  }
 }
