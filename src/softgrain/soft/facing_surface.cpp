@@ -124,7 +124,7 @@ SurfaceContact contact_with_patch(const Surfaces& surfaces, const SurfaceContact
   if (has_edges && !inside) edge.set_normal(way, surfaces.reach, contact);
   // So deep in a soft grain no contact lets it come: the point is in front of a fin that has been squeezed
   // out, and its nearest vertex is on the other side.
-  constexpr double deep = 0.1;
+  constexpr double deep = 0.02;
   if (!has_edges && contact.gap < -deep * surfaces.segment)
     for (int q = 0; q < static_cast<int>(topology.patches.size()); ++q)
       if (const SurfacePatch patch = surfaces.patch(grain, q);
