@@ -16,7 +16,7 @@ from .work import write_rows
 DENSITY, MODULUS, NU = 1000.0, 10e6, 0.3  # [kg/m^3], [Pa], of both cases
 CONFINEMENT = 0.5  # psi_b, from which confinement on the rule's grain answers as a bulk: the value of LAMMPS' examples
 SPEED_OF_SPHERE, LAST_APPROACH = 0.05, 0.36  # [m/s] of each wall; d/R
-SPEED_OF_BOX, LAST_PHI = 0.2, 0.885  # [m/s] of each wall
+SPEED_OF_BOX, LAST_PHI = 0.2, 0.983  # [m/s] of each wall
 RADIUS = 1e-3  # [m] of case 7
 
 
@@ -132,5 +132,5 @@ METAL_SPHERE = Case(
     {"reference": reference, "softgrain": softgrain_sphere, "lammps": mdr_sphere})
 POWDER = Case(
     "powder", "64 spheres that flow in a box", Column("phi_0", "-", r"packing fraction $\Phi_0$"),
-    (Column("p/Y", "-", "pressure $p/Y$"), Column("z", "-", "$Z$")), np.array([0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.88]),
+    (Column("p/Y", "-", "pressure $p/Y$"), Column("z", "-", "$Z$")), np.array([0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.88, 0.9, 0.92, 0.94, 0.96, 0.98]),
     {"softgrain": softgrain_powder, "lammps": mdr_powder})
