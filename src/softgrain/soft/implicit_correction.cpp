@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/soft/implicit_step.hpp"
@@ -20,6 +21,9 @@ constexpr double quasi_static_correction = 8, quasi_static_force = 10;
 /// The force where A has the inertia of a longer step, as hardly any force holds the grains: what is left of
 /// it works along their long ways (docs/decisions/0031).
 constexpr double floppy_force = 4;
+
+/// Of a line search: corrections that count, in tolerances, and how often a move is halved.
+constexpr double searched_from = 10, most_halvings = 4;
 
 /// |f|^2 of the node that moves most, lane by lane.
 Wide squared_length(const WideVectors& f) {
@@ -68,7 +72,10 @@ ImplicitDynamics::Imbalance ImplicitDynamics::correct(bool first, bool same_matr
   });
   const double correction = std::max(largest_correction_of_grains(), press_moved_) / mean_radius_;
   if (!quasi_static(outline_.dt)) {
-    follow_secant(same_matrix && correction >= options.tolerance);
+    if (grains.has_history())
+      follow_search(first);
+    else
+      follow_secant(same_matrix && correction >= options.tolerance);
     return {.correction = correction, .residual = correction};
   }
   const double largest_force = inertia_of_ > options.inertia_of_at_most ? floppy_force : quasi_static_force;
@@ -144,6 +151,37 @@ void ImplicitDynamics::follow_secant(bool accelerated) {
       grains.batches[b].position[i] += moved_[b][i];
     }
     correction_[b] = f;
+    keep_rigid(b);
+  };
+  share(follow, [&](int b, Message& message) { pass_known(b, grains.batches[b].position, message); });
+}
+
+/// Newton's method with a line search, for each grain by itself: x += f; but where f has grown since the
+/// iteration before, that one went too far, and half of its move is taken back. Points that flow have a
+/// tangent that holds near by: without it iterations run away (docs/decisions/0081).
+void ImplicitDynamics::follow_search(bool first) {
+  const double counts = searched_from * options.tolerance * mean_radius_;
+  const auto follow = [&](int b) {
+    const WideVectors& f = force_[b];
+    WideVectors& move = moved_[b];
+    move.resize(f.size());
+    if (first) size_[b] = std::numeric_limits<double>::infinity(), halvings_[b] = 0.0;
+    const Wide square = squared_length(f);
+    Wide ahead = 1.0, back = 0.0;  // shares of f and of the last move
+    for (int lane = 0; lane < Wide::size; ++lane) {
+      const double size = std::sqrt(square[lane]);
+      if (size > std::max(size_[b][lane], counts) && halvings_[b][lane] < most_halvings) {
+        ahead.set(lane, 0), back.set(lane, 0.5);
+        halvings_[b].set(lane, halvings_[b][lane] + 1);
+      } else {
+        size_[b].set(lane, size);
+        halvings_[b].set(lane, 0);
+      }
+    }
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      grains.batches[b].position[i] += ahead * f[i] - back * move[i];
+      move[i] = ahead * f[i] + back * move[i];
+    }
     keep_rigid(b);
   };
   share(follow, [&](int b, Message& message) { pass_known(b, grains.batches[b].position, message); });

@@ -81,7 +81,7 @@ ImplicitDynamics::ImplicitDynamics(SoftGrains soft_grains, Box<2> box_of_grains,
   }
   for (auto* vectors : {&start_, &velocity_start_, &half_solved_, &force_, &kept_, &correction_, &moved_})
     vectors->resize(grains.batches.size());
-  pace_.resize(grains.batches.size());
+  for (auto* of_batches : {&pace_, &size_, &halvings_}) of_batches->resize(grains.batches.size());
   rigid_.resize(grains.batches.size());
 }
 

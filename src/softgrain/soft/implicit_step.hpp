@@ -173,6 +173,7 @@ class ImplicitDynamics {
   double largest_correction_of_grains();
   double unbalanced_force(std::span<const Vec<2>> contact_force);
   void follow_secant(bool accelerated);
+  void follow_search(bool first);
   void follow_momentum(bool first, bool accelerated);
   double mean_contact_force(double dt) const;  // sum of all, over the number of grains [N/m]
   double find_depth();
@@ -233,6 +234,7 @@ class ImplicitDynamics {
   std::vector<WideVectors> correction_, moved_;  // of the iteration before: f, and what became of x
   std::vector<Wide> flying_;                     // 1 for grains whose start is x_n + dt v_n, else 0
   std::vector<Wide> pace_;                       // t_k of follow_momentum
+  std::vector<Wide> size_, halvings_;            // of the last correction and of its move, of follow_search
   std::vector<Vec<2>> proximal_;                 // (outline vertices) c p/l on both components [N/m^2]
   std::vector<HeldSpin> held_;                   // per batch
   std::vector<RigidStep> rigid_;                 // per batch
