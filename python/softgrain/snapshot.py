@@ -26,9 +26,9 @@ class Snapshot:
     outlines: dict = field(default_factory=dict)  # position (v, 2) [m], grain (v,): counter-clockwise polygons
     surface: dict = field(default_factory=dict)  # in space: quad (q, 4) of the outlines' vertices, grain (q,), pressure (q,) [Pa];
     #                                              walls (w, 12): four corners each [m]
-    points: dict = field(default_factory=dict)  # in space, of surfaces near others: vertex (k,) and grain (k,) of each, patch (k,)
-    #                                             whose middle it is or -1, facing (k,) grain or -1, wall (k,) or -1, gap (k,) [m],
-    #                                             pushes (k,)
+    points: dict = field(default_factory=dict)  # in space, of surfaces near others: vertex (k,) and grain (k,) of each, patch (k,) or
+    #                                             edge (k,), sorted by its ends, whose middle it is, or -1, facing (k,) grain or -1,
+    #                                             wall (k,) or -1, gap (k,) [m], pushes (k,)
     cell: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # lattice vectors of a periodic cell, one a row [m]
 
     @property
@@ -125,11 +125,12 @@ def _points_near_others(file, outlines, surface):
         return {}
     bodies = file["checkpoint/contact_bodies"][()].astype(int).reshape(-1, 19)
     point, vertex, wall, patch_vertex = bodies[:, 0], bodies[:, 1], bodies[:, 2], bodies[:, 3 + 5]
-    grain, vertices = outlines["grain"].astype(int), len(outlines["grain"])
-    patch = np.where(point >= vertices, point - vertices, -1)
+    grain, vertices, patches = outlines["grain"].astype(int), len(outlines["grain"]), len(surface["grain"])
+    patch = np.where((point >= vertices) & (point < vertices + patches), point - vertices, -1)
+    edge = np.where(point >= vertices + patches, point - vertices - patches, -1)
     turned = (patch >= 0) & (surface["grain"].astype(int)[patch] != grain[vertex])
     own, facing = np.where(turned, patch_vertex, vertex), np.where(turned, vertex, patch_vertex)
-    return {"vertex": own, "grain": grain[own], "patch": patch, "wall": wall,
+    return {"vertex": own, "grain": grain[own], "patch": patch, "edge": edge, "wall": wall,
             "pushes": file["checkpoint/contact_impulse"][()].reshape(-1, 3)[:, 0] > 0,
             "gap": file["checkpoint/contact_places"][()].reshape(-1, 20)[:, 3],
             "facing": np.where(wall < 0, grain[facing], -1)}

@@ -13,8 +13,10 @@ from spheres import packing_of
 from synthetic import write_run
 
 import softgrain
+from softgrain import patches
 from softgrain.export import fabric, grain_table
 from softgrain.export.__main__ import main as export
+from softgrain.export.grains import contact_areas
 
 SPHERES = {"experiment": {"model": "mpm", "loading": "isotropic", "dimension": 3}, "mpm": {"cells": 2},
            "sample": {"grains": 4, "packing_fraction": 0.35}, "loading": {"wall_velocity": "5 m/s", "max_strain": 0.35}}
@@ -44,6 +46,21 @@ def pressed_cube():
                              total_force=PUSH * np.array(normal))
     snapshot.outlines["force"] = of_vertex
     return snapshot
+
+
+class Areas(unittest.TestCase):
+    def test_points_all_over_a_grain_stand_for_its_whole_surface(self):
+        """With edges, as soft grains bring them, and without, as rigid ones do."""
+        snapshot = packing_of([(0, 0, 0)], [1], (4, 4, 4), cells=4)
+        vertices, quads = len(snapshot.outlines["position"]), len(snapshot.surface["quad"])
+        for edges in (2 * quads, 0):
+            count = vertices + quads + edges
+            number = np.arange(count)
+            patch = np.where((number >= vertices) & (number < vertices + quads), number - vertices, -1)
+            edge = np.where(number >= vertices + quads, number - vertices - quads, -1)
+            snapshot.points.update(vertex=np.where(number < vertices, number, 0), grain=np.zeros(count, int), patch=patch, edge=edge,
+                                   wall=np.zeros(count, int), pushes=np.ones(count, bool), gap=np.zeros(count), facing=np.full(count, -1))
+            self.assertAlmostEqual(contact_areas(snapshot)[0] / patches.patch_areas(snapshot).sum(), 1, 12)
 
 
 class Shapes(unittest.TestCase):

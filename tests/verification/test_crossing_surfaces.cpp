@@ -93,6 +93,6 @@ TEST_CASE("elastic spheres pressed into each other do not cross between their ve
   const Crossing found = crossing(grains, 4);
   CAPTURE(found.deepest / radius);
   CAPTURE(found.inside);
-  CHECK(found.deepest / radius < 0.04);       // 0.072 where vertices alone meet
-  CHECK(found.inside < 0.12 * found.points);  // 0.20
+  CHECK(found.deepest / radius < 0.02);  // 0.072 where vertices alone meet, 0.027 with middles of patches
+  CHECK(found.inside < 0.08 * found.points);  // 0.20, 0.095
 }

@@ -72,22 +72,26 @@ def fabric(snapshot: Snapshot) -> np.ndarray:
 
 def contact_areas(snapshot: Snapshot) -> np.ndarray:
     """(n,) [m^2]: each point that pushes, or is nearer than NEAR of the grain's radius, stands for its share of the surface: a vertex
-    for an eighth of each patch round it, the middle of a patch for half of it. Where both grains of a pair bring points each has the
-    mean of both sides. In runs up to version 0.2 elastic spheres met each other by vertices alone, which then stand for a fourth.
+    for a sixteenth of each patch round it, the middle of an edge for an eighth of both, that of a patch for a fourth of it. Grains
+    that bring no edges have twice as much for the others: rigid ones, and all in older runs; up to version 0.2 elastic spheres met
+    each other by vertices alone, which then stand for a fourth. Both grains of a pair have its area, the mean of both sides if both
+    bring points.
 
     Points that push alone say too little: from step to step others of a contact bear its force."""
     points, quad = snapshot.points, snapshot.surface["quad"].astype(int)
     count = len(snapshot.particles["position"])
     own, other, between = points["grain"], points["facing"], points["wall"] < 0
     pair = np.minimum(own, other) * count + np.maximum(own, other)
-    half = ~between | np.isin(pair, pair[between & (points["patch"] >= 0)])
+    half, quarter = ~between | np.isin(pair, pair[between & (points["patch"] >= 0)]), np.isin(own, own[points["edge"] >= 0])
     mutual = between & np.isin(other * count + own, (own * count + other)[between])
     near = points["pushes"] | (points["gap"] < NEAR * snapshot.particles["radius"][own])
     of_patch = patches.patch_areas(snapshot)
     of_vertex = np.bincount(quad.ravel(), np.repeat(of_patch / 4, 4), len(snapshot.outlines["position"]))
-    share = near * np.where(points["patch"] >= 0, of_patch[points["patch"]], of_vertex[points["vertex"]]) / np.where(half, 2, 1)
-    area = np.bincount(own, np.where(mutual, share / 2, share), count)
-    return area + np.bincount(other[mutual], share[mutual] / 2, count)
+    ends = np.sort(np.stack([quad, np.roll(quad, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    of_edge = np.bincount(np.unique(ends, axis=0, return_inverse=True)[1].ravel(), np.repeat(of_patch / 8, 4))  # sorted as points are
+    share = np.where(points["patch"] >= 0, of_patch[points["patch"]], of_vertex[points["vertex"]]) / np.where(quarter, 4, np.where(half, 2, 1))
+    share = near * np.where(points["edge"] >= 0, of_edge[points["edge"]], share) / np.where(mutual, 2, 1)
+    return np.bincount(own, share, count) + np.bincount(other[between], share[between], count)
 
 
 def write_grains(snapshot, file):

@@ -94,6 +94,10 @@ SurfaceContact contact_with_patch(const Surfaces& surfaces, const SurfaceContact
   const Vec<3> x = at - contact.image;
   const SolidTopology& topology = surfaces.grains.topology(grain);
   const bool has_edges = topology.rigid_shape();
+  if (!has_edges) {
+    contact.gap = dot(x - surfaces.state.position[nearest], surfaces.normal[nearest]);
+    if (contact.gap > far) return contact;
+  }
   FacesOfEdge edge;
   Vec<3> way;  // to the nearest place
   bool inside = false;
@@ -112,13 +116,7 @@ SurfaceContact contact_with_patch(const Surfaces& surfaces, const SurfaceContact
   };
   for (const FacingPatch& facing : patches_facing(surfaces, grain, nearest, x)) {
     const SurfacePatch patch = surfaces.patch(grain, facing.patch);
-    const double u = std::abs(facing.u - 0.3), v = std::abs(facing.v - 0.3);
-    if (!has_edges && least == std::numeric_limits<double>::infinity()) {
-      const auto beside = patch.at(u, v);
-      contact.gap = dot(x - beside.place, beside.normal());
-      if (contact.gap > far) return contact;
-    }
-    look_at(patch, facing.patch, u, v);
+    look_at(patch, facing.patch, std::abs(facing.u - 0.3), std::abs(facing.v - 0.3));
     if (inside) break;
   }
   if (has_edges && !inside) edge.set_normal(way, surfaces.reach, contact);

@@ -52,15 +52,15 @@ struct LumpedRow<2> {
   }
 };
 
-// per contact and sweep: reads 290 B in the order of memory, 17 velocities and masses, or 1, 16 or 32; of a
-// middle the weights of its patch, which all grains of a shape share
+// per contact and sweep: reads 290 B in the order of memory, and the velocities and masses of 16 vertices, or
+// none, and of those of the point, whose weights all grains of a shape share: 1, or 4 to 6 or 16 of a middle
 template <>
 struct LumpedRow<3> {
   int contact = 0;
-  int begin = 0;                  // the point; or the first vertex of the grain to which its patch belongs
-  const PatchNet* own = nullptr;  // whose middle it is
-  bool faces = false;             // a patch of another grain
-  std::array<int, 16> vertex{};   // of that
+  int begin = 0;                      // the point; or the first vertex of the grain to which a middle belongs
+  const SurfacePoint* own = nullptr;  // this middle
+  bool faces = false;                 // a patch of another grain
+  std::array<int, 16> vertex{};       // of that
   std::array<double, 16> weight{};
   Vec<3> normal, offset;
   double delassus = 0, inverse_delassus = 0;
@@ -84,8 +84,8 @@ struct LumpedRow<3> {
   }
 
   [[gnu::always_inline]] Vec<3> velocity(const PaddedVec* v) const {
-    Lanes u = own == nullptr ? load_lanes(v[begin]) : sum(own->vertex, own->middle, v + begin);
-    if (faces) u -= sum(vertex, weight, v);
+    Lanes u = own == nullptr ? load_lanes(v[begin]) : sum(own->count, own->vertex, own->weight, v + begin);
+    if (faces) u -= sum(16, vertex, weight, v);
     return {u[0], u[1], u[2]};
   }
   [[gnu::always_inline]] void push(const Vec<3>& P, PaddedVec* v, const double* inverse_mass) const {
@@ -93,23 +93,24 @@ struct LumpedRow<3> {
     if (own == nullptr)
       store_lanes(load_lanes(v[begin]) + inverse_mass[begin] * by, v[begin]);
     else
-      push(own->vertex, own->middle, by, v + begin, inverse_mass + begin);
-    if (faces) push(vertex, weight, -by, v, inverse_mass);
+      push(own->count, own->vertex, own->weight, by, v + begin, inverse_mass + begin);
+    if (faces) push(16, vertex, weight, -by, v, inverse_mass);
   }
 
  private:
-  [[gnu::always_inline]] static Lanes sum(const std::array<int, 16>& at, const std::array<double, 16>& w,
-                                          const PaddedVec* v) {
+  [[gnu::always_inline]] static Lanes sum(int count, const std::array<int, 16>& at,
+                                          const std::array<double, 16>& w, const PaddedVec* v) {
     Lanes even{}, odd{};
-    for (std::size_t k = 0; k < 16; k += 2) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); k += 2) {
       even += w[k] * load_lanes(v[at[k]]);
       odd += w[k + 1] * load_lanes(v[at[k + 1]]);
     }
     return even + odd;
   }
-  [[gnu::always_inline]] static void push(const std::array<int, 16>& at, const std::array<double, 16>& w,
-                                          Lanes P, PaddedVec* v, const double* inverse_mass) {
-    for (std::size_t k = 0; k < 16; ++k)
+  [[gnu::always_inline]] static void push(int count, const std::array<int, 16>& at,
+                                          const std::array<double, 16>& w, Lanes P, PaddedVec* v,
+                                          const double* inverse_mass) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
       store_lanes(load_lanes(v[at[k]]) + (w[k] * inverse_mass[at[k]]) * P, v[at[k]]);
   }
 };

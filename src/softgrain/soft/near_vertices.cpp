@@ -40,11 +40,11 @@ NearVertices::NearVertices(const Surfaces& surfaces, double reach)
   for (int v = 0; v < vertices; ++v) begin_[v + 1] += begin_[v];
 }
 
-void NearVertices::find_for_middle(const PatchNet& net, int first_vertex, const Vec<3>& x,
+void NearVertices::find_for_middle(const SurfacePoint& middle, int first_vertex, const Vec<3>& x,
                                    std::vector<NearestVertex>& near) const {
   near.clear();
-  for (const std::size_t corner : PatchNet::corner)
-    for (NearestVertex n : of(first_vertex + net.vertex[corner])) {
+  for (const int corner : std::span(middle.corner).first(middle.of_edge() ? 2 : 4))
+    for (NearestVertex n : of(first_vertex + corner)) {
       n.distance_squared = distance_squared(x, n.vertex);
       add_nearest(n, near);
     }
@@ -83,7 +83,8 @@ void NearVertices::find(double reach, int v, std::vector<NearestVertex>& all) co
   const int grain = surfaces_.grains.grain_of_vertex(v);
   grid_.for_each_neighbour(v, [&](int w, const Vec<3>& d) {
     const int other = surfaces_.grains.grain_of_vertex(w);
-    if (other == grain || surfaces_.grains.topology(other).ball) return;
+    if (other == grain || surfaces_.grains.topology(other).ball || !surfaces_.brings_points(grain, other))
+      return;
     const double distance_squared = dot(d, d);
     if (distance_squared <= reach * reach) add_nearest({v, other, w, distance_squared}, near);
   });

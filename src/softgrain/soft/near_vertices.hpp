@@ -7,7 +7,7 @@
 
 namespace softgrain {
 
-/// The vertex of another grain nearest to vertex `of`, or to the middle of a patch.
+/// The vertex of another grain nearest to vertex `of`, or to a middle.
 struct NearestVertex {
   int of, grain, vertex;
   double distance_squared;
@@ -16,16 +16,17 @@ struct NearestVertex {
 /// True of the vertices at which outlines meet: not of rigid spheres, nor of centres.
 bool is_of_surface(const SolidGrains& grains, int v);
 
-/// For each vertex those within `reach` of it, sorted by (vertex, grain). Keeps a reference to the surfaces.
+/// For each vertex those within `reach` of it, of the grains to which its own brings its points, sorted by
+/// (vertex, grain). Keeps a reference to the surfaces.
 class NearVertices {
  public:
   NearVertices(const Surfaces& surfaces, double reach);
   std::span<const NearestVertex> of(int vertex) const {
     return std::span(near_).subspan(begin_[vertex], begin_[vertex + 1] - begin_[vertex]);
   }
-  /// Those nearest to the middle of a patch, which is at x, of all grains that are near one of its corners.
-  /// Where the middle touches a grain, this has a vertex within reach of a corner.
-  void find_for_middle(const PatchNet& net, int first_vertex, const Vec<3>& x,
+  /// Those nearest to the middle of a patch or edge, which is at x, of all grains that are near one of its
+  /// corners. Where the middle touches a grain, this has a vertex within reach of a corner.
+  void find_for_middle(const SurfacePoint& middle, int first_vertex, const Vec<3>& x,
                        std::vector<NearestVertex>& near) const;
 
  private:

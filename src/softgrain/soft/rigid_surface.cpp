@@ -86,7 +86,6 @@ void find_edges(const std::vector<Vec<3>>& edges, SolidTopology& shape) {
       const Vec<3> there = normal_of(outline, outline.quad[quad_at.at({b, a})]);
       if (dot(here, there) < std::cos(least_edge) && near_an_edge(a, b)) net.sharp |= side[k];
     }
-    net.middle = patch_weights(net, 0.5, 0.5);
   }
 }
 
@@ -132,6 +131,7 @@ SolidTopology rigid_surface(const StarSurface& surface, int n) {
     for (int& node : quad) node -= ball.outline_begin;
   SolidTopology shape(std::move(outline), surface.volume(), trace(surface.moments()));
   find_edges(places_of_edges(surface.mesh()), shape);
+  shape.middles = middles_of(shape.patches);
   const auto nodes = std::span<const Vec<3>>(shape.grid.node);
   shape.node_volume = masses_with(nodes.first(nodes.size() - 1), surface.volume(), surface.moments());
   shape.patch_fullness = surface.volume() / measure_surface(shape.patches, shape.grid.node.data()).volume;

@@ -54,6 +54,7 @@ SolidTopology::SolidTopology(SolidGrid reference_grid)
     quads.push_back(quad);
   }
   patches = patch_nets(quads, quads_round);
+  middles = middles_of(patches);
   const double inside = measure_surface(patches, &grid.node[grid.outline_begin]).volume;
   for (std::size_t p = 0; p < points.size(); ++p) {
     if (p % 8 == 0) cell_shapes.emplace_back();

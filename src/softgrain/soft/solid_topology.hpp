@@ -34,9 +34,10 @@ struct SolidTopology {
   std::vector<SolidPoint> points;  ///< (8 cells)
   std::vector<BrickShape> cell_shapes;
   LaplaceRows laplace;
-  std::vector<double> node_volume;  ///< (nodes) fullness sum_p N_i V_p [R^3]: the lumped mass over rho R^3
-  double volume = 0;                ///< of the body, 4 pi/3 for a ball [R^3]
-  std::vector<PatchNet> patches;    ///< (quads) of the outline
+  std::vector<double> node_volume;    ///< (nodes) fullness sum_p N_i V_p [R^3]: the lumped mass over rho R^3
+  double volume = 0;                  ///< of the body, 4 pi/3 for a ball [R^3]
+  std::vector<PatchNet> patches;      ///< (quads) of the outline
+  std::vector<SurfacePoint> middles;  ///< of patches, then of edges
   /// (outline vertices) the quads round each; -1 behind the third of a vertex of valence 3
   std::vector<std::array<int, 4>> quads_round;
   double patch_fullness = 1;  ///< volume of the body over that within the smooth outline

@@ -193,7 +193,7 @@ void visit_contacts(const SolidGrains& grains, int walls, bool repeats, std::vec
   if (repeats) visit_contact_images(visit, images);
   visit.list({"contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t)"}, impulse);
   if (!visit.reads()) return;
-  const PatchMiddles middles(grains);
+  const Middles middles(grains);
   check_contact_bodies(bodies, bodies_of_contact, 2, [&](std::size_t k) {
     return k == 2 ? walls : grains.outline_size() + (k == 0 ? middles.size() : 0);
   });

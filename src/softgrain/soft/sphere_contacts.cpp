@@ -14,7 +14,7 @@ constexpr int spheres_at_once = 32;
 /// What a sphere may meet, and the spheres themselves.
 struct Points {
   std::vector<Vec<3>> position;
-  /// The contact of each with nothing yet: a vertex of a soft grain, the middle of a patch, or a sphere
+  /// The contact of each with nothing yet: a vertex of a soft grain, a middle, or a sphere
   std::vector<SurfaceContact> contact;
   std::vector<int> sphere;  ///< of each sphere its number here
   double largest = 0;       ///< of their radii [m]
@@ -33,9 +33,9 @@ Points points_of(const SolidGrains& grains, const OutlineStateOf<3>& state) {
     }
     if (shape.rigid()) points.largest = std::max(points.largest, grains.radius(g));
   }
-  const PatchMiddles middles(grains);
-  for (int patch = 0; patch < middles.size(); ++patch) {
-    const SurfaceContact middle = middles.point(patch);
+  const Middles middles(grains);
+  for (int i = 0; i < middles.size(); ++i) {
+    const SurfaceContact middle = middles.point(i);
     if (grains.topology(grains.grain_of_vertex(middle.vertex)).rigid()) continue;
     points.position.push_back(place_of(middle, state.position));
     points.contact.push_back(middle);

@@ -58,7 +58,8 @@ void add_contacts_of_vertex(const Surfaces& surfaces, const NearVertices& near, 
 
 void add_contacts_of_middle(const Surfaces& surfaces, const NearVertices& near, double margin,
                             const SurfaceContact& middle, std::vector<SurfaceContact>& contacts) {
-  if (!is_of_surface(surfaces.grains, middle.vertex)) return;
+  const bool rigid = surfaces.grains.topology(surfaces.grains.grain_of_vertex(middle.vertex)).rigid();
+  if (!is_of_surface(surfaces.grains, middle.vertex) || (rigid && middle.own->of_edge())) return;
   thread_local std::vector<NearestVertex> of_middle;
   const Vec<3> x = place_of(middle, surfaces.state.position);
   near.find_for_middle(*middle.own, middle.own_begin, x, of_middle);
@@ -67,18 +68,23 @@ void add_contacts_of_middle(const Surfaces& surfaces, const NearVertices& near, 
 
 }  // namespace
 
-PatchMiddles::PatchMiddles(const SolidGrains& grains) : grains_(grains) {
+Middles::Middles(const SolidGrains& grains) : grains_(grains) {
+  const auto add = [&](std::size_t count) { begin_.push_back(begin_.back() + static_cast<int>(count)); };
+  for (int g = 0; g < grains.size(); ++g) add(grains.topology(g).patches.size());
   for (int g = 0; g < grains.size(); ++g)
-    begin_.push_back(begin_.back() + static_cast<int>(grains.topology(g).patches.size()));
+    add(grains.topology(g).middles.size() - grains.topology(g).patches.size());
 }
 
-SurfaceContact PatchMiddles::point(int patch) const {
-  const auto next = std::upper_bound(begin_.begin(), begin_.end(), patch);
-  const int grain = static_cast<int>(next - begin_.begin()) - 1, begin = grains_.outline_begin(grain);
-  const PatchNet& net = grains_.topology(grain).patches[patch - begin_[grain]];
-  return {.point = grains_.outline_size() + patch,
-          .vertex = begin + net.vertex[5],
-          .own = &net,
+SurfaceContact Middles::point(int i) const {
+  const auto next = std::upper_bound(begin_.begin(), begin_.end(), i);
+  const int block = static_cast<int>(next - begin_.begin()) - 1, grain = block % grains_.size();
+  const SolidTopology& shape = grains_.topology(grain);
+  const int first = block < grains_.size() ? 0 : static_cast<int>(shape.patches.size());
+  const SurfacePoint& middle = shape.middles[first + i - begin_[block]];
+  const int begin = grains_.outline_begin(grain);
+  return {.point = grains_.outline_size() + i,
+          .vertex = begin + middle.corner[0],
+          .own = &middle,
           .own_begin = begin};
 }
 
@@ -87,7 +93,7 @@ std::vector<SurfaceContact> SurfaceNeighbours::detect(const SolidGrains& grains,
   const Surfaces surfaces(grains, state);
   const double gap = margin * surfaces.segment;
   const NearVertices near(surfaces, surfaces.reach + gap);
-  const PatchMiddles middles(grains);
+  const Middles middles(grains);
   std::vector<SurfaceContact> contacts;
   append_in_parallel(grains.outline_size(), points_at_once, contacts,
                      [&](int v, std::vector<SurfaceContact>& list) {

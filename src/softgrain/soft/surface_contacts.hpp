@@ -9,20 +9,21 @@
 
 namespace softgrain {
 
-/// A point of a grain in space against another grain's outline (the master), or against a wall. Both grains
-/// of a pair bring their vertices and the middles of their patches, so that neither outline bulges into the
-/// other between its vertices.
+/// A point of a grain in space against another grain's outline (the master), or against a wall. The finer
+/// grain of a pair (Surfaces::brings_points) brings its vertices and the middles of its patches and edges,
+/// half as far apart as the vertices, so that neither outline bulges into the other between them. Rigid
+/// grains bring no middles of edges.
 ///
 /// Place and normal on the master are those where the contact was found. Until it is looked for again they
 /// stay, and with them the weights: the gap n . sum weight x is linear in the vertices, so that impulses with
 /// these weights do the work of the gap, and contact makes no energy.
 struct SurfaceContact {
-  /// Number of the point: an outline vertex, or behind all of these the patch whose middle it is
+  /// Number of the point: an outline vertex, or behind all of these a middle, as Middles numbers them
   int point = 0;
-  int vertex = 0;                 ///< the point itself, or a corner of its patch
-  int wall = -1;                  ///< or -1
-  const PatchNet* own = nullptr;  ///< whose middle the point is, of the grain's shape; or none
-  int own_begin = 0;              ///< first outline vertex of that grain
+  int vertex = 0;                     ///< the point itself, or beside it
+  int wall = -1;                      ///< or -1
+  const SurfacePoint* own = nullptr;  ///< the middle, of the grain's shape; or none
+  int own_begin = 0;                  ///< first outline vertex of that grain
   /// vertices of the patch that it faces, with their weights
   std::array<int, 16> master{};
   std::array<double, 16> weight{};
@@ -36,8 +37,8 @@ struct SurfaceContact {
   template <class Visit>
   void for_each_own_vertex(Visit&& visit) const {
     if (own == nullptr) return visit(vertex, 1.0);
-    for (std::size_t k = 0; k < 16; ++k)
-      if (own->middle[k] != 0) visit(own_begin + own->vertex[k], own->middle[k]);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(own->count); ++k)
+      if (own->weight[k] != 0) visit(own_begin + own->vertex[k], own->weight[k]);
   }
   /// The same for those of the master, if there is one; weights with the sign that they have in the gap.
   template <class Visit>
@@ -54,18 +55,18 @@ struct SurfaceContact {
   }
 };
 
-/// The middles of the patches of all grains, which are numbered behind their outline vertices. Keeps a
-/// reference to the grains.
-class PatchMiddles {
+/// The middles of the patches of all grains, then those of the edges of all grains. As points they are
+/// numbered behind the outline vertices. Keeps a reference to the grains.
+class Middles {
  public:
-  explicit PatchMiddles(const SolidGrains& grains);
+  explicit Middles(const SolidGrains& grains);
   int size() const { return begin_.back(); }
-  /// The point `patch` from 0, with nothing that it meets yet.
-  SurfaceContact point(int patch) const;
+  /// The middle i from 0, with nothing that it meets yet.
+  SurfaceContact point(int i) const;
 
  private:
   const SolidGrains& grains_;
-  std::vector<int> begin_{0};  // (grains + 1)
+  std::vector<int> begin_{0};  // (2 grains + 1) patches of each grain, then edges of each
 };
 
 /// Finds the contacts of outlines in space. It remembers nothing, so that whoever goes on from a snapshot

@@ -78,6 +78,9 @@ void append_in_parallel(int count, int at_once, std::vector<Item>& all, const Ad
   parallel_for(static_cast<int>(parts.size()), [&](int k) {
     for (int i = k * at_once; i < std::min(count, (k + 1) * at_once); ++i) add(i, parts[k]);
   });
+  std::size_t size = all.size();
+  for (const auto& part : parts) size += part.size();
+  all.reserve(size);
   for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
 }
 

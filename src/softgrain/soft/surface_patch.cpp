@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "softgrain/soft/curve_weights.hpp"
 
@@ -56,7 +58,7 @@ PatchNet net_of(Quad quad, const QuadNeighbours& neighbours) {
   const Quad original = quad;
   if (ghosts) std::rotate(quad.begin(), first, quad.end());
   const auto [a, b, c, d] = quad;
-  PatchNet net{.vertex = {}, .ghosts = ghosts, .middle = {}};
+  PatchNet net{.vertex = {}, .ghosts = ghosts};
   const auto put = [&](std::size_t i, std::size_t j, int vertex) { net.vertex[4 * i + j] = vertex; };
   put(1, 1, a), put(2, 1, b), put(2, 2, c), put(1, 2, d);
   const auto ab = neighbours.across(original, a, b), bc = neighbours.across(original, b, c),
@@ -69,7 +71,6 @@ PatchNet net_of(Quad quad, const QuadNeighbours& neighbours) {
   put(3, 0, neighbours.opposite(b, a, c));
   put(3, 3, neighbours.opposite(c, b, d));
   put(0, 3, neighbours.opposite(d, c, a));
-  net.middle = patch_weights(net, 0.5, 0.5);
   return net;
 }
 
@@ -86,6 +87,22 @@ void go_straight_on(const PatchNet& net, std::array<double, 4>& of_u, std::array
   if ((net.sharp & PatchNet::high_u) != 0) fold(of_u, 3, 2, 1);
   if ((net.sharp & PatchNet::low_v) != 0) fold(of_v, 0, 1, 2);
   if ((net.sharp & PatchNet::high_v) != 0) fold(of_v, 3, 2, 1);
+}
+
+/// Of the edge from a corner of the patch to the next: the vertices that have weight there, one twice if need
+/// be.
+SurfacePoint middle_of_edge(const PatchNet& net, std::size_t from, const std::array<int, 4>& ends) {
+  constexpr std::array<std::array<double, 2>, 4> place{{{0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}}};
+  const auto weight = patch_weights(net, place[from][0], place[from][1]);
+  SurfacePoint middle{.count = 0, .corner = ends};
+  const auto add = [&](int vertex, double w) {
+    const auto at = static_cast<std::size_t>(middle.count++);
+    middle.vertex[at] = vertex, middle.weight[at] = w;
+  };
+  for (std::size_t k = 0; k < 16; ++k)
+    if (weight[k] != 0) add(net.vertex[k], weight[k]);
+  if (middle.count % 2 != 0) add(middle.vertex[0], 0);
+  return middle;
 }
 
 /// Gives the weights of the ghosts P_01, P_10 and P_00 to the vertices of which they are made.
@@ -115,6 +132,22 @@ std::array<double, 16> patch_weights(const PatchNet& net, double u, double v) {
   for (std::size_t k = 0; k < 16; ++k) weights[k] = of_u[k / 4] * of_v[k % 4];
   if (net.ghosts) spread_ghosts(weights);
   return weights;
+}
+
+std::vector<SurfacePoint> middles_of(std::span<const PatchNet> patches) {
+  std::vector<SurfacePoint> middles;
+  std::map<std::pair<int, int>, SurfacePoint> of_edge;
+  for (const PatchNet& net : patches) {
+    std::array<int, 4> corner;
+    for (std::size_t k = 0; k < 4; ++k) corner[k] = net.vertex[PatchNet::corner[k]];
+    middles.push_back({.vertex = net.vertex, .weight = patch_weights(net, 0.5, 0.5), .corner = corner});
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto [a, b] = std::minmax(corner[k], corner[(k + 1) % 4]);
+      of_edge.try_emplace({a, b}, middle_of_edge(net, k, {a, b}));
+    }
+  }
+  for (const auto& [ends, middle] : of_edge) middles.push_back(middle);
+  return middles;
 }
 
 void SurfacePatch::put_ghosts() {

@@ -24,10 +24,9 @@ struct PatchNet {
   /// Where the quad's own vertices P_11, P_21, P_22, P_12 stand in the net.
   static constexpr std::array<std::size_t, 4> corner{5, 9, 10, 6};
 
-  std::array<int, 16> vertex{};     ///< P_ij at 4 i + j; with ghosts C at 0 and P_11 at 1 and 4
-  bool ghosts = false;              ///< P_11 has valence 3
-  unsigned sharp = 0;               ///< sides along which the outline has an edge
-  std::array<double, 16> middle{};  ///< patch_weights at u = v = 1/2
+  std::array<int, 16> vertex{};  ///< P_ij at 4 i + j; with ghosts C at 0 and P_11 at 1 and 4
+  bool ghosts = false;           ///< P_11 has valence 3
+  unsigned sharp = 0;            ///< sides along which the outline has an edge
 };
 
 /// Nets of all quads of a closed outline, whose vertices have valence 4 or 3, two of valence 3 never in one
@@ -37,6 +36,19 @@ std::vector<PatchNet> patch_nets(std::span<const std::array<int, 4>> quads,
 
 /// Weights of the net's vertices in c(u, v); they add up to 1.
 std::array<double, 16> patch_weights(const PatchNet& net, double u, double v);
+
+/// A point of the outline between its vertices: at sum weight x of the first `count`, which is even.
+struct SurfacePoint {
+  std::array<int, 16> vertex{};
+  std::array<double, 16> weight{};
+  int count = 16;               ///< 4 or 6 of an edge
+  std::array<int, 4> corner{};  ///< of the patch whose middle it is; or first the two ends of an edge
+  bool of_edge() const { return count < 16; }
+};
+
+/// The middles u = v = 1/2 of all patches, then those of all edges between two of them, each once: sorted by
+/// their ends, the lower number first.
+std::vector<SurfacePoint> middles_of(std::span<const PatchNet> patches);
 
 /// A patch in its present shape.
 class SurfacePatch {

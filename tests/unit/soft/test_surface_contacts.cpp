@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <numbers>
+#include <utility>
 
 #include "softgrain/soft/facing_surface.hpp"
 #include "softgrain/soft/rigid_surface.hpp"
@@ -17,6 +20,13 @@ namespace {
 
 std::vector<Vec<3>> outline_of(const SolidTopology& ball) {
   return {ball.grid.node.begin() + ball.grid.outline_begin, ball.grid.node.end()};
+}
+
+Vec<3> place_of(const SurfacePoint& point, const Vec<3>* x) {
+  const SurfaceContact contact{.point = 1000, .own = &point};
+  Vec<3> place;
+  contact.for_each_own_vertex([&](int v, double weight) { place += weight * x[v]; });
+  return place;
 }
 
 /// Two balls on each other along z, their centres 2 - 2 d apart, with the state that contacts are found in.
@@ -103,22 +113,48 @@ TEST_CASE("tangents of a patch are the derivatives of its place, and neighbourin
   }
 }
 
-TEST_CASE("vertices and middles of two balls face each other's sphere along the line of centres") {
+TEST_CASE(
+    "vertices and middles of the first of two balls face the other's sphere along the line of centres") {
   TwoBalls two(0.02);
   const auto contacts = SurfaceNeighbours{}.detect(two.grains, two.state, 0.3);
   REQUIRE(contacts.size() > 8);
-  std::array<int, 2> vertices{}, middles{};  // of each ball
+  int vertices = 0, of_patches = 0, of_edges = 0;
   for (const SurfaceContact& contact : contacts) {
-    const int grain = two.grains.grain_of_vertex(contact.vertex);
-    ++(contact.own == nullptr ? vertices : middles)[static_cast<std::size_t>(grain)];
-    CHECK(facing_grain(contact, two.grains) == 1 - grain);
-    const Vec<3> centre{0, 0, grain == 0 ? 1.96 : 0.0};  // of the master
+    ++(contact.own == nullptr ? vertices : contact.own->of_edge() ? of_edges : of_patches);
+    CHECK(two.grains.grain_of_vertex(contact.vertex) == 0);
+    CHECK(facing_grain(contact, two.grains) == 1);
+    const Vec<3> centre{0, 0, 1.96};  // of the master
     const Vec<3> d = place_of(contact, two.state.position) - centre;
     CHECK(contact.gap == doctest::Approx(norm(d) - 1).epsilon(0.006));  // of a smooth outline of 98 vertices
     CHECK(dot(contact.normal, d) / norm(d) > 0.999);
     CHECK(gap_now(contact, two.state) == doctest::Approx(contact.gap).epsilon(1e-9));
   }
-  for (const std::size_t ball : {0u, 1u}) CHECK((vertices[ball] > 0 && middles[ball] > 0));
+  CHECK((vertices > 0 && of_patches > 0 && of_edges > 0));
+}
+
+TEST_CASE("the finer of two balls brings its points, whether it is the smaller or has more vertices") {
+  const auto coarse = test::ball(4), fine = test::ball(6);
+  struct Pair {
+    std::shared_ptr<const SolidTopology> shape[2];
+    double radius[2];
+    int finer;
+  };
+  for (const Pair& pair : {Pair{{coarse, fine}, {1, 1}, 1}, Pair{{fine, coarse}, {1, 1}, 0},
+                           Pair{{coarse, coarse}, {1, 0.9}, 1}, Pair{{coarse, fine}, {0.5, 1}, 0}}) {
+    const auto placed = [&](int k, double z) {
+      return PlacementOf<3>{
+          .topology = pair.shape[k], .radius = pair.radius[k], .centre = {0, 0, z}, .velocity = {}};
+    };
+    SolidGrains grains({placed(0, 0), placed(1, 0.98 * (pair.radius[0] + pair.radius[1]))},
+                       {GrainMaterial{make_law(MaterialLaw::neo_hookean, 1, 0.45), 1}});
+    OutlineStateOf<3> state;
+    grains.gather_outline(state.position);
+    state.start = state.position;
+    const auto contacts = SurfaceNeighbours{}.detect(grains, state, 0.1);
+    CHECK(!contacts.empty());
+    for (const SurfaceContact& contact : contacts)
+      CHECK(grains.grain_of_vertex(contact.vertex) == pair.finer);
+  }
 }
 
 TEST_CASE("every vertex and middle near another ball is found, in a cell that repeats, too") {
@@ -134,14 +170,11 @@ TEST_CASE("every vertex and middle near another ball is found, in a cell that re
     const double margin = 0.1, error = 0.003;  // of the smooth outline
     const auto contacts = SurfaceNeighbours{}.detect(two.grains, two.state, margin);
     const double segment = std::sqrt(4 * std::numbers::pi / 218);
-    const PatchMiddles middles(two.grains);
+    const Middles middles(two.grains);
     int near = 0;
     const auto look_at = [&](const SurfaceContact& point) {
-      const int other = 1 - two.grains.grain_of_vertex(point.vertex);
-      const double there = repeats ? (other == 1 ? 10 : -10) : 0, height = other == 1 ? 1.92 : 0;
-      const Vec<3> d =
-          place_of(point, two.state.position) - Vec<3>{0, 0, height + (repeats && other == 1 ? 10 : 0)};
-      const Vec<3> way{d[0], d[1], d[2] + there};
+      if (two.grains.grain_of_vertex(point.vertex) != 0) return;
+      const Vec<3> way = place_of(point, two.state.position) - Vec<3>{0, 0, 1.92};
       if (norm(way) - 1 > margin * segment - error) return;
       ++near;
       CHECK(std::count_if(contacts.begin(), contacts.end(),
@@ -158,13 +191,35 @@ TEST_CASE("the middle of a patch is its place at u = v = 1/2, with ghosts and wi
   const SolidTopology cube = rigid_surface(StarSurface(test::cube_mesh(1)), 4);
   for (const SolidTopology* shape : {&ball, &cube}) {
     const Vec<3>* x = shape->grid.node.data() + shape->grid.outline_begin;
-    for (const PatchNet& net : shape->patches) {
-      const SurfaceContact middle{.point = 1000, .own = &net};
-      Vec<3> place;
-      middle.for_each_own_vertex([&](int v, double weight) { place += weight * x[v]; });
-      CHECK(norm(place - SurfacePatch(net, x).at(0.5, 0.5).place) < 1e-14);
+    for (std::size_t q = 0; q < shape->patches.size(); ++q)
+      CHECK(norm(place_of(shape->middles[q], x) - SurfacePatch(shape->patches[q], x).at(0.5, 0.5).place) <
+            1e-14);
+  }
+}
+
+TEST_CASE("the middle of an edge, each once, is where both patches beside it have the middle of this side") {
+  const SolidTopology ball(ball_grid(4));
+  const Vec<3>* x = ball.grid.node.data() + ball.grid.outline_begin;
+  const std::size_t patches = ball.patches.size();
+  REQUIRE(ball.middles.size() == 3 * patches);  // Euler: 2 edges for each quad of a closed surface
+  std::map<std::pair<int, int>, const SurfacePoint*> edges;
+  for (std::size_t k = patches; k < ball.middles.size(); ++k) {
+    const SurfacePoint& edge = ball.middles[k];
+    CHECK((edge.count == 4 || edge.count == 6));
+    CHECK(edges.insert({{edge.corner[0], edge.corner[1]}, &edge}).second);
+  }
+  std::map<const SurfacePoint*, int> sides;
+  for (const PatchNet& net : ball.patches) {
+    constexpr std::array<std::array<double, 2>, 4> middle{{{0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}}};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto ends =
+          std::minmax(net.vertex[PatchNet::corner[k]], net.vertex[PatchNet::corner[(k + 1) % 4]]);
+      const SurfacePoint* edge = edges.at(ends);
+      ++sides[edge];
+      CHECK(norm(place_of(*edge, x) - SurfacePatch(net, x).at(middle[k][0], middle[k][1]).place) < 1e-14);
     }
   }
+  for (const auto& [edge, count] : sides) CHECK(count == 2);
 }
 
 TEST_CASE("impulses of contacts between grains in space change no momentum") {
