@@ -206,9 +206,11 @@ int run_program(int argc, char** argv) {
 }
 
 /// Memory that was given back stays with the process. By default the kernel maps and clears it anew for each
-/// large array: half of the time of a snapshot of a million points.
+/// large array: half of the time of a snapshot of a million points. Arrays of 32 MB and more are given back:
+/// of 10 000 spheres a snapshot would leave 1.5 GB behind.
 void keep_memory() {
-  mallopt(M_MMAP_MAX, 0);
+  constexpr int large = 32 << 20;  // [bytes], the most that the C library takes
+  mallopt(M_MMAP_THRESHOLD, large);
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 }
 

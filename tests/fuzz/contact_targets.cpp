@@ -43,7 +43,7 @@ Datasets small_problem(bool local, int storage) {
 std::string hdf5_file(const Datasets& datasets) {
   Hdf5Writer file("problem");
   for (const auto& [path, array] : datasets) file.write(path, array);
-  return file.finish();
+  return std::string(file.finish());
 }
 
 }  // namespace

@@ -84,16 +84,34 @@ std::string read_beginning(const fs::path& path, std::size_t size) {
   return read_all(open_file(path, O_RDONLY), path, size);
 }
 
-PendingFile::PendingFile(fs::path path, std::string_view bytes, Survives survives)
+PendingFile::PendingFile(fs::path path, std::initializer_list<std::string_view> pieces, Survives survives)
     : path_(std::move(path)), temporary_(path_.string() + ".tmp"), survives_(survives) {
   Descriptor file = open_file(temporary_, O_WRONLY | O_CREAT | O_TRUNC);
-  bool ok = write_all(file.number(), bytes) == bytes.size();
+  std::size_t size = 0;
+  bool ok = true;
+  for (const std::string_view piece : pieces) {
+    size += piece.size();
+    ok = ok && write_all(file.number(), piece) == piece.size();
+  }
   ok = ok && (survives_ == Survives::kill || ::fsync(file.number()) == 0);
   if (ok && file.close()) return;
   const int error = errno;
   ::unlink(temporary_.c_str());
   errno = error;
-  fail(path_, fmt::format("cannot write {} bytes", bytes.size()));
+  fail(path_, fmt::format("cannot write {} bytes", size));
+}
+
+void PendingFile::check(std::initializer_list<std::string_view> pieces) const {
+  const Descriptor file = open_file(temporary_, O_RDONLY);
+  const auto comes_back = [&](std::string_view piece) {
+    constexpr std::size_t at_once = 1 << 20;
+    for (; !piece.empty(); piece.remove_prefix(std::min(at_once, piece.size())))
+      if (read_all(file, temporary_, std::min(at_once, piece.size())) != piece.substr(0, at_once))
+        return false;
+    return true;
+  };
+  if (!std::all_of(pieces.begin(), pieces.end(), comes_back) || !read_all(file, temporary_, 1).empty())
+    throw IoError(fmt::format("{}: the disk does not give back what was written", path_.string()));
 }
 
 PendingFile::~PendingFile() {
@@ -108,7 +126,7 @@ void PendingFile::commit() {
 }
 
 void write_file(const fs::path& path, std::string_view bytes, Survives survives) {
-  PendingFile(path, bytes, survives).commit();
+  PendingFile(path, {bytes}, survives).commit();
 }
 
 AppendFile::AppendFile(fs::path path)

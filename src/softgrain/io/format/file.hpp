@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -41,12 +42,16 @@ enum class Survives { kill, power_cut };
 /// renames. Without `commit` nothing is left. Raises IoError naming the path and the bytes needed.
 class PendingFile {
  public:
-  PendingFile(std::filesystem::path path, std::string_view bytes, Survives survives = Survives::power_cut);
+  /// The pieces one behind the other.
+  PendingFile(std::filesystem::path path, std::initializer_list<std::string_view> pieces,
+              Survives survives = Survives::power_cut);
   ~PendingFile();
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;
 
   const std::filesystem::path& temporary() const { return temporary_; }
+  /// Raises IoError unless the disk gives these pieces back.
+  void check(std::initializer_list<std::string_view> pieces) const;
   void commit();
 
  private:

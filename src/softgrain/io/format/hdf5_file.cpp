@@ -62,10 +62,10 @@ std::string hdf5_version() {
 
 namespace {
 
-/// Memory of a file in memory, as the library wants it; when the file closes its bytes go to the string
-/// `bytes`, as many as the string is long. (H5Fget_file_image gives them too, but spoils the superblock's
-/// checksum.)
-H5FD_file_image_callbacks_t keep_image_at_close(std::string& bytes) {
+/// Memory of a file in memory, as the library wants it; when the file closes its bytes go to `kept`, a
+/// std::unique_ptr. (H5Fget_file_image gives them too, but spoils the superblock's checksum.)
+template <class Bytes>
+H5FD_file_image_callbacks_t keep_image_at_close(Bytes& kept_bytes) {
   using Operation = H5FD_file_image_op_t;
   H5FD_file_image_callbacks_t callbacks{};
   callbacks.image_malloc = [](std::size_t size, Operation, void*) { return std::malloc(size); };
@@ -76,14 +76,15 @@ H5FD_file_image_callbacks_t keep_image_at_close(std::string& bytes) {
     return std::memcpy(to, from, size);
   };
   callbacks.image_free = [](void* at, Operation operation, void* user) -> herr_t {
-    auto& kept = *static_cast<std::string*>(user);
-    if (operation == H5FD_FILE_IMAGE_OP_FILE_CLOSE) std::memcpy(kept.data(), at, kept.size());
-    std::free(at);
+    if (operation == H5FD_FILE_IMAGE_OP_FILE_CLOSE)
+      static_cast<Bytes*>(user)->reset(static_cast<char*>(at));
+    else
+      std::free(at);
     return 0;
   };
   callbacks.udata_copy = [](void* user) { return user; };
   callbacks.udata_free = [](void*) -> herr_t { return 0; };
-  callbacks.udata = &bytes;
+  callbacks.udata = &kept_bytes;
   return callbacks;
 }
 
@@ -95,7 +96,7 @@ Hdf5Writer::Hdf5Writer(std::string name) : name_(std::move(name)) {
   checked(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110), name_, "HDF5 older than 1.10");
   constexpr auto what = "cannot create an HDF5 file in memory";
   checked(H5Pset_fapl_core(access, grown_by, false), name_, what);
-  auto callbacks = keep_image_at_close(bytes_);
+  auto callbacks = keep_image_at_close(image_.bytes_);
   checked(H5Pset_file_image_callbacks(access, &callbacks), name_, what);
   file_ = checked(H5Fcreate(unique_name(this).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), name_, what);
 }
@@ -160,12 +161,13 @@ void Hdf5Writer::write_attribute(const std::string& name, std::string_view value
   write_root_attribute(file_, name_, name, type, std::string(value).c_str());
 }
 
-std::string Hdf5Writer::finish() {
+FileImage Hdf5Writer::finish() {
   constexpr auto what = "cannot finish the HDF5 file";
   checked(H5Fflush(file_, H5F_SCOPE_GLOBAL), name_, what);
-  bytes_.resize(checked(H5Fget_file_image(file_, nullptr, 0), name_, what));  // asks for the size only
+  const auto size = checked(H5Fget_file_image(file_, nullptr, 0), name_, what);  // asks for the size only
+  image_.size_ = static_cast<std::size_t>(size);
   checked(H5Fclose(std::exchange(file_, -1)), name_, what);
-  return std::move(bytes_);
+  return std::move(image_);
 }
 
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& file) : name_(file.string()) { open(read_file(file)); }

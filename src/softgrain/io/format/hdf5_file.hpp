@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +10,20 @@
 #include "softgrain/state/array.hpp"
 
 namespace softgrain {
+
+/// The bytes of a file in memory, as the HDF5 library allocated them: large ones are not copied.
+class FileImage {
+ public:
+  operator std::string_view() const { return {bytes_.get(), size_}; }  // NOLINT: it is these bytes
+
+ private:
+  friend class Hdf5Writer;
+  struct Free {
+    void operator()(char* bytes) const { std::free(bytes); }
+  };
+  std::unique_ptr<char, Free> bytes_;
+  std::size_t size_ = 0;
+};
 
 /// Builds an HDF5 file in memory, so that a full disk can never leave half a file behind: the finished bytes
 /// go to disk in one piece. Format of HDF5 1.10, every dataset chunked with a Fletcher-32 checksum. Every
@@ -27,11 +43,11 @@ class Hdf5Writer {
   void write_attribute(const std::string& name, std::int64_t value);
   void write_attribute(const std::string& name, std::string_view value);
   /// Closes the file and returns its bytes; nothing may be written afterwards.
-  std::string finish();
+  FileImage finish();
 
  private:
   std::string name_;
-  std::string bytes_;
+  FileImage image_;
   std::int64_t file_ = -1;  ///< HDF5's identifier
 };
 

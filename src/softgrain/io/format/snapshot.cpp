@@ -52,21 +52,24 @@ std::string file_hash(std::string_view bytes) {
 constexpr std::size_t hash_length = 32;
 
 /// XXH3-128 over the datasets in the order of their paths: path, 0, 'f' or 'i', rows, columns, values.
-std::string content_hash(const Datasets& datasets) {
-  Hash hash;
-  for (const auto& [path, array] : datasets) {
-    hash.add(path.c_str(), path.size() + 1);
-    hash.add(array.values.index() == 0 ? "f" : "i", 1);
+class ContentHash {
+ public:
+  void add(const std::string& path, const Array& array) {
+    hash_.add(path.c_str(), path.size() + 1);
+    hash_.add(array.values.index() == 0 ? "f" : "i", 1);
     std::visit(
-        [&hash, columns = array.columns](const auto& values) {
-          hash.add(values.size() / columns);
-          hash.add(columns);
-          hash.add(values.data(), values.size() * sizeof values[0]);
+        [this, columns = array.columns](const auto& values) {
+          hash_.add(values.size() / columns);
+          hash_.add(columns);
+          hash_.add(values.data(), values.size() * sizeof values[0]);
         },
         array.values);
   }
-  return hash.digest();
-}
+  std::string digest() const { return hash_.digest(); }
+
+ private:
+  Hash hash_;
+};
 
 /// Of these 0.1.0 before its release knew nothing.
 constexpr std::array<std::string_view, 3> later_totals{"residual_limit", "energy_error", "energy_scale"};
@@ -90,10 +93,10 @@ void for_each_total(Report& report, Sums& sums, Visit&& visit) {
   visit("row_overlap_max", sums.overlap_max);
 }
 
-Datasets datasets_of(const Snapshot& snapshot) {
+Datasets datasets_of(Snapshot snapshot) {
   Datasets datasets;
-  const auto add = [&](const std::string& group, const std::map<std::string, Array>& arrays) {
-    for (const auto& [name, array] : arrays) datasets[group + name] = array;
+  const auto add = [&](const std::string& group, std::map<std::string, Array>& arrays) {
+    for (auto& [name, array] : arrays) datasets[group + name] = std::move(array);
   };
   add(checkpoint_group, snapshot.checkpoint.arrays);
   add(particle_group, snapshot.scene.particles);
@@ -109,16 +112,16 @@ Datasets datasets_of(const Snapshot& snapshot) {
   return datasets;
 }
 
-/// The arrays of one group, by their names in it.
-std::map<std::string, Array> arrays_of(const Datasets& datasets, const std::string& group) {
+/// Takes out the arrays of one group, by their names in it.
+std::map<std::string, Array> arrays_of(Datasets& datasets, const std::string& group) {
   std::map<std::string, Array> arrays;
   for (auto at = datasets.lower_bound(group); at != datasets.end() && at->first.starts_with(group); ++at)
-    arrays[at->first.substr(group.size())] = at->second;
+    arrays[at->first.substr(group.size())] = std::move(at->second);
   return arrays;
 }
 
 /// Distributes datasets whose hash is right; what is missing then was written by another program.
-Snapshot snapshot_of(const Datasets& datasets, const std::string& name) {
+Snapshot snapshot_of(Datasets datasets, const std::string& name) {
   Snapshot snapshot;
   try {
     snapshot.checkpoint.arrays = arrays_of(datasets, checkpoint_group);
@@ -185,9 +188,11 @@ void StepSums::add(const StepReport& step) {
   overlap_max = std::max(overlap_max, step.overlap_max);
 }
 
-std::string encode_snapshot(const Snapshot& snapshot, const std::string& name) {
-  const Datasets datasets = datasets_of(snapshot);
-  require_room(datasets);
+namespace {
+
+/// The HDF5 file in front of the hash. An array is given up as soon as it stands in the file: of a large run
+/// there is no room for all of them twice.
+FileImage image_of(Snapshot snapshot, const std::string& name) {
   const BuildInfo build = build_info();
   Hdf5Writer file(name);
   file.write_attribute("format", format_name);
@@ -199,11 +204,24 @@ std::string encode_snapshot(const Snapshot& snapshot, const std::string& name) {
   file.write_attribute("wall_seconds", snapshot.wall_seconds);
   file.write_attribute("cpu_seconds", snapshot.cpu_seconds);
   file.write_attribute("case", std::string_view(snapshot.case_text));
-  for (const auto& [path, array] : datasets) file.write(path, array);
-  file.write_attribute("content_hash", std::string_view(content_hash(datasets)));
+  Datasets datasets = datasets_of(std::move(snapshot));
+  require_room(datasets);
+  ContentHash hash;
+  for (auto& [path, array] : datasets) {
+    hash.add(path, array);
+    file.write(path, array);
+    array = {};
+  }
+  file.write_attribute("content_hash", std::string_view(hash.digest()));
   file.write_attribute("complete", std::int64_t{1});
-  const std::string bytes = file.finish();
-  return bytes + file_hash(bytes);
+  return file.finish();
+}
+
+}  // namespace
+
+std::string encode_snapshot(Snapshot snapshot, const std::string& name) {
+  const FileImage image = image_of(std::move(snapshot), name);
+  return std::string(image) + file_hash(image);
 }
 
 Snapshot decode_snapshot(std::string_view bytes, const std::string& name) {
@@ -211,9 +229,11 @@ Snapshot decode_snapshot(std::string_view bytes, const std::string& name) {
   check_format(file, name);
   Datasets datasets;
   for (const std::string& path : file.datasets()) datasets[path] = file.read(path);
-  if (content_hash(datasets) != file.text_attribute("content_hash"))
+  ContentHash hash;
+  for (const auto& [path, array] : datasets) hash.add(path, array);
+  if (hash.digest() != file.text_attribute("content_hash"))
     throw IoError(fmt::format("{}: damaged: its content hash is wrong", name));
-  Snapshot snapshot = snapshot_of(datasets, name);
+  Snapshot snapshot = snapshot_of(std::move(datasets), name);
   snapshot.checkpoint.step = file.integer_attribute("step");
   snapshot.checkpoint.time = file.real_attribute("time");
   snapshot.wall_seconds = file.real_attribute("wall_seconds");
@@ -222,9 +242,11 @@ Snapshot decode_snapshot(std::string_view bytes, const std::string& name) {
   return snapshot;
 }
 
-void write_snapshot(const std::filesystem::path& path, const Snapshot& snapshot) {
-  PendingFile file(path, encode_snapshot(snapshot, path.string()));
-  read_snapshot(file.temporary());  // raises IoError unless the disk gives back what it got
+void write_snapshot(const std::filesystem::path& path, Snapshot snapshot) {
+  const FileImage image = image_of(std::move(snapshot), path.string());
+  const std::string hash = file_hash(image);
+  PendingFile file(path, {image, hash});
+  file.check({image, hash});
   file.commit();
 }
 

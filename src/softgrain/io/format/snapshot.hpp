@@ -35,14 +35,14 @@ struct Snapshot {
 
 /// The bytes of an HDF5 file (docs/format.md) with a hash of its contents in it and a hash of all bytes
 /// behind it. `name` stands for it in messages.
-std::string encode_snapshot(const Snapshot& snapshot, const std::string& name);
+std::string encode_snapshot(Snapshot snapshot, const std::string& name);
 
 /// The inverse. Raises IoError when the bytes are not exactly what `encode_snapshot` wrote: cut short,
 /// altered, of another format.
 Snapshot decode_snapshot(std::string_view bytes, const std::string& name);
 
 /// Writes the file so that it appears under its name only after it has been read back and found intact.
-void write_snapshot(const std::filesystem::path& path, const Snapshot& snapshot);
+void write_snapshot(const std::filesystem::path& path, Snapshot snapshot);
 Snapshot read_snapshot(const std::filesystem::path& path);
 
 /// Its time [s], without unpacking the rest.

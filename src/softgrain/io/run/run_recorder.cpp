@@ -156,22 +156,20 @@ void RunRecorder::save(const AnySimulation& simulation) {
   series_->sync();  // the rows before a snapshot are on the disk when it is
   const fs::path path =
       paths_.snapshot_folder() / snapshot_name(simulation.steps_done(), simulation.steps_planned());
-  const Scene scene = simulation.scene();
   write_snapshot(path, {.case_text = request_.case_text,
                         .checkpoint = simulation.checkpoint(),
-                        .scene = scene,
+                        .scene = simulation.scene(),
                         .report = record_.report,
                         .sums = sums_,
                         .wall_seconds = wall_seconds(),
                         .cpu_seconds = cpu_before_ + record_.ranks.cpu_all});
   last_snapshot_ = path;
-  save_scene(simulation, scene);
+  if (request_.the_case.output.vtk) save_scene(simulation, simulation.scene());
   log(fmt::format("snapshot {} at {:.1f} %", path.filename().string(), 100 * simulation.progress()));
   write_record(simulation);
 }
 
 void RunRecorder::save_scene(const AnySimulation& simulation, const Scene& scene) {
-  if (!request_.the_case.output.vtk) return;
   const std::string label = snapshot_label(last_snapshot_);
   write_scene(paths_.vtk_folder(), label, scene);
   frames_.push_back({simulation.time(), label});

@@ -103,9 +103,11 @@ RunReport RunRecorder::resume(AnySimulation& simulation) {
     last_row_ = read_last_row(paths_.series_file()).value_or(std::vector<Quantity>{});
     log(fmt::format("resume at step {} from {}", snapshot.checkpoint.step, last_snapshot_.string()));
     frames_ = frames_before(snapshot.checkpoint.step, paths_);
-    if (request_.the_case.output.vtk) fs::create_directories(paths_.vtk_folder());
     if (request_.case_before != request_.case_text) write_file(paths_.case_file(), request_.case_text);
-    save_scene(simulation, snapshot.scene);
+    if (request_.the_case.output.vtk) {
+      fs::create_directories(paths_.vtk_folder());
+      save_scene(simulation, snapshot.scene);
+    }
     write_record(simulation);
   });
   return snapshot.report;

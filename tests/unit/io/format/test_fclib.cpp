@@ -25,7 +25,7 @@ FclibFile read(const Datasets& datasets) {
   Hdf5Writer writer("test");
   for (const auto& [path, values] : datasets) writer.write(path, {.columns = 1, .values = values});
   const TemporaryDirectory directory;
-  return read_fclib(directory.file("problem.hdf5", writer.finish()));
+  return read_fclib(directory.file("problem.hdf5", std::string(writer.finish())));
 }
 
 /// Datasets of a matrix in CSparse's way.

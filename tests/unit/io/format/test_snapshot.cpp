@@ -194,7 +194,7 @@ TEST_CASE("a snapshot of a later format, or with contents that are not those of 
     file.write_attribute("version", version);
     file.write_attribute("complete", std::int64_t{1});
     file.write_attribute("content_hash", std::string_view("0123"));
-    const std::string bytes = file.finish();
+    const std::string bytes(file.finish());
     return bytes + hash_of_bytes(bytes);
   };
   CHECK_THROWS_WITH_AS(decode_snapshot(snapshot_of_version(2), "a"),
