@@ -10,6 +10,7 @@
 #include "softgrain/experiment/adhesion_of_case.hpp"
 #include "softgrain/experiment/advice.hpp"
 #include "softgrain/experiment/estimate.hpp"
+#include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/ranks_estimate.hpp"
 #include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/case/case_text.hpp"
@@ -89,7 +90,10 @@ void print_estimate(const Case& the_case, const Estimate& estimate) {
              "about {} time steps\n"
              "about {:.0f} MB of memory, {:.0f} MB of disk\n"
              "about {} on one thread\n",
-             count(estimate.particles), bpm ? "primary particles" : "material points",
+             count(estimate.particles),
+             is_mixed(the_case) ? "primary particles and material points"
+             : bpm              ? "primary particles"
+                                : "material points",
              count(estimate.contacts), count(estimate.steps), estimate.memory / 1e6, estimate.disk / 1e6,
              duration_text(3600 * estimate.hours));
 }

@@ -7,6 +7,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/estimate.hpp"
+#include "softgrain/experiment/kinds.hpp"
 #include "softgrain/io/case/case_file.hpp"
 #include "softgrain/io/case/words.hpp"
 #include "softgrain/io/format/file.hpp"
@@ -47,15 +48,16 @@ Json json_of(const std::vector<Quantity>& row) {
 /// "diametral of bpm, 1750 primaries, friction 0, seed 1", "compaction of mpm, 20 grains of 3584 points,
 /// ...".
 std::string summary(const Case& c) {
-  const std::string grain = is_elastic(c) ? fmt::format("{} points", points_of_grain(c))
-                            : is_rigid(c) ? fmt::format("{} vertices", points_of_grain(c))
-                                          : fmt::format("{} primaries", c.bpm.primaries);
+  const std::string grain = is_mixed(c)     ? "points or of primaries"
+                            : is_elastic(c) ? fmt::format("{} points", points_of_grain(c))
+                            : is_rigid(c)   ? fmt::format("{} vertices", points_of_grain(c))
+                                            : fmt::format("{} primaries", c.bpm.primaries);
   const std::string grains =
       c.experiment.loading == LoadingPath::diametral ? "" : fmt::format("{} grains of ", c.sample.grains);
   const bool one_bonded = is_bonded(c) && c.experiment.loading == LoadingPath::diametral;
   const double friction = one_bonded ? c.bpm.inner_friction : c.contact.friction;
   return fmt::format("{} of {}, {}{}, friction {}, seed {}", word_of(c.experiment.loading),
-                     word_of(c.experiment.model), grains, grain, friction, c.sample.seed);
+                     is_mixed(c) ? "mpm and bpm" : word_of(c.experiment.model), grains, grain, friction, c.sample.seed);
 }
 
 /// "strain 0.1  wall_height 9 mm ...", a few to a line.

@@ -12,6 +12,7 @@ from .run import NotRecorded, Snapshot
 MOST_GRAINS_WITH_FIELDS = 60  # beyond, cells are too small to be seen: each grain has its mean
 POINT_COVER = 1.25  # radius of a material point's disk that leaves no holes between neighbours, over that of its area
 CHAIN_WIDTH, CHAIN_WIDTH_OF_GRAINS = 0.9, 0.3  # of the widest chain, over the radius of a body
+CORNERS = 16  # of a primary among cells, which are polygons
 FAINTEST, DARKEST = 0.12, 0.9  # opacity of chains
 NOWHERE = np.empty((0, 2))
 STRONG_FORCE = 0.99  # share of all forces below the one that has the full width
@@ -54,6 +55,11 @@ def is_elastic(snapshot: Snapshot) -> bool:
     return bool(snapshot.outlines) and "J" in snapshot.particles
 
 
+def are_points(snapshot: Snapshot) -> np.ndarray:
+    """(n,) bool: which particles are material points where bonded grains are among elastic ones, whose primaries come after them."""
+    return np.asarray(snapshot.particles.get("primary", np.zeros(len(snapshot.particles["position"])))) == 0
+
+
 def grain_means(snapshot: Snapshot, values) -> np.ndarray:
     """Mean of a field over each grain, weighted by the areas of its particles."""
     grain, area = snapshot.particles["grain"].astype(int), snapshot.particles["radius"] ** 2
@@ -90,15 +96,20 @@ def _surface(snapshot, values):
     if not is_elastic(snapshot):
         return Surface([], position, radius, values, [])
     polygons = [vertices for _, vertices in outlines(snapshot)]
-    quads = cells(snapshot)
+    quads, points = cells(snapshot), are_points(snapshot)
     if quads is None:
-        return Surface([], position, POINT_COVER * radius, values, polygons)
-    return Surface(_with_rigid(snapshot, quads), NOWHERE, np.empty(0), values.reshape(-1, 4).mean(axis=1), polygons)
+        return Surface([], position, np.where(points, POINT_COVER, 1) * radius, values, polygons)
+    shapes, means = _with_rigid(snapshot, quads), values[points].reshape(-1, 4).mean(axis=1)
+    if not points.all():
+        corners = np.linspace(0, 2 * np.pi, CORNERS, endpoint=False)
+        circle = np.column_stack([np.cos(corners), np.sin(corners)])
+        shapes = [*shapes, *(position[~points, None] + radius[~points, None, None] * circle)]
+    return Surface(shapes, NOWHERE, np.empty(0), np.concatenate([means, values[~points]]), polygons)
 
 
 def _with_rigid(snapshot, quads):
     """Cells, but of rigid grains, which have one each, their outlines."""
-    grain = snapshot.particles["grain"].astype(int)[::4]
+    grain = snapshot.particles["grain"].astype(int)[are_points(snapshot)][::4]
     alone = np.flatnonzero(np.bincount(grain)[grain] == 1)
     if alone.size == 0:
         return quads
@@ -168,8 +179,8 @@ def cells(snapshot: Snapshot) -> np.ndarray | None:
     """(n, 4, 2): the cells whose Gauss points the material points are, four after four; None where they are not.
 
     A corner lies sqrt(3) times as far from the middle as the point beside it."""
-    position, radius = snapshot.particles["position"], snapshot.particles["radius"]
-    grain = snapshot.particles["grain"]
+    of_points = are_points(snapshot)
+    position, radius, grain = (snapshot.particles[name][of_points] for name in ("position", "radius", "grain"))
     if len(position) % 4:
         return None
     points, first = position.reshape(-1, 4, 2), radius[::4]

@@ -43,6 +43,10 @@ inline Words tiny_path(const std::string& name) {
   if (name == "bonded_rigid")
     add({"sample.grains=8", "bpm.primaries=20", "loading.wall_velocity=\"5 m/s\"", "loading.max_strain=0.2",
          "loading.unload_at=[0.16]", "loading.unload_by=0.04", "loading.max_stress=0"});
+  if (name == "bonded_elastic")
+    add({"sample.grains=8", "bpm.primaries=20", "bpm.inner_friction=0.1", "loading.wall_velocity=\"5 m/s\"",
+         "loading.max_strain=0.2", "loading.unload_at=[0.16]", "loading.unload_by=0.04",
+         "loading.max_stress=0"});
   if (name == "shapes")
     add({"kind.ellipse.number=2", "kind.square.number=2", "kind.drop.number=2",
          "loading.wall_velocity=\"4 m/s\"", "loading.max_strain=0.48", "sample.packing_fraction=0.58"});
@@ -117,6 +121,7 @@ inline std::vector<TinyCase> tiny_cases() {
     else if (name == "die" || name == "tablet")
       cases.push_back({name, source, tiny_path(name), 5});
     else if (name == "rubber_sand" || name == "soft_rigid" || name == "bonded_rigid" ||
+             name == "bonded_elastic" ||
              name == "compaction_3d" || name == "sphere_walls" || name == "bonded_sphere" ||
              name == "bonded_spheres" || name == "hydrogels")
       cases.push_back({name, source, tiny_path(name)});

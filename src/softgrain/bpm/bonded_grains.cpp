@@ -29,8 +29,6 @@ constexpr double close_packing_fraction = Dim == 2 ? 0.82 : 0.55;
 template <int Dim>
 constexpr double fullest_fraction = Dim == 2 ? 0.95 : 0.78;
 
-constexpr int first_step_factor = 200;
-
 void refuse_overlaps(const StepReport& report) {
   if (report.overlap_mean <= largest_mean_overlap && report.overlap_max <= largest_overlap) return;
   throw NumericalError(fmt::format(
@@ -79,63 +77,6 @@ BondedGrainsOf<Dim>::BondedGrainsOf(BondedGrainsSetupOf<Dim> setup)
 template <int Dim>
 int BondedGrainsOf<Dim>::kinds() const {
   return static_cast<int>(friction_.inside.size());
-}
-
-template <int Dim>
-StepReport BondedGrainsOf<Dim>::step(Box<Dim>& box, double dt) {
-  dynamics_.particles.walls = box.walls;
-  for (std::size_t w = 0; w < box.walls.size(); ++w)
-    set_wall_velocity(dynamics_.particles, static_cast<int>(w), box.walls[w].velocity);
-  dynamics_.particles.presses = box.presses;
-  dynamics_.particles.cell = box.cell;
-  if (keeps_problem_) velocity_start_ = dynamics_.particles.velocity;
-  dynamics_.options.solver.max_sweeps = most_sweeps_ * (impulse_time_ == 0 ? first_step_factor : 1);
-  double power_of_cell = 0;
-  StepReport report = dynamics_.step(
-      [&](const RigidParticles<Dim>& particles, std::span<Vec<Dim>> force) {
-        const Shares& shares = dynamics_.reference.shares;
-        attraction_.update(particles, dynamics_.reference, shares);
-        attraction_.add_forces(particles, force, shares);
-        power_of_cell = adhesion_.add_forces(particles, dynamics_.contacts, force);
-        if (gravity_ == Vec<Dim>{}) return;
-        particles.followed.for_each_range(particles.size(), [&](int begin, int end) {
-          for (int i = begin; i < end; ++i) force[i] += particles.mass[i] * gravity_;
-        });
-      },
-      dt);
-  report.residual_limit = dynamics_.options.solver.worst_factor * dynamics_.options.solver.tolerance;
-  impulse_time_ = dt;
-  for (std::size_t w = 0; w < box.walls.size(); ++w) {
-    box.walls[w] = dynamics_.particles.walls[w];
-    box.impulse[w] = dynamics_.wall_impulse(static_cast<int>(w));
-  }
-  box.presses = dynamics_.particles.presses;
-  box.cell = dynamics_.particles.cell;
-  add_work();
-  work_.walls += dt * power_of_cell;
-  // the stress of a cell asks for centres of mass after each step, an open box for the highest grain
-  if (box.cell.any() || box.open_top) dynamics_.know_all();
-  return report;
-}
-
-template <int Dim>
-void BondedGrainsOf<Dim>::add_work() {
-  const StepWork& work = dynamics_.work;
-  work_.walls += work.wall;
-  work_.dissipation -= work.contact + work.push_out;
-  work_.between -= work.between;
-  work_.friction -= work.friction;
-}
-
-/// All primaries of a grain alike.
-template <int Dim>
-void BondedGrainsOf<Dim>::follow(const Mat<Dim>& L) {
-  dynamics_.know_all();
-  RigidParticles<Dim>& particles = dynamics_.particles;
-  const double before = kinetic_energy(particles);
-  const std::vector<Vec<Dim>> centre = centres();
-  for (int i = 0; i < particles.size(); ++i) particles.velocity[i] += L * centre[particles.grain[i]];
-  work_.walls += kinetic_energy(particles) - before;
 }
 
 template <int Dim>

@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "softgrain/bpm/surface_attraction.hpp"
 #include "softgrain/contact/pair_friction.hpp"
 #include "softgrain/model/model.hpp"
+#include "softgrain/observe/stress.hpp"
 #include "softgrain/rigid/step.hpp"
 
 namespace softgrain {
@@ -41,6 +43,12 @@ struct BondedGrainsSetupOf {
 };
 using BondedGrainsSetup = BondedGrainsSetupOf<2>;
 
+/// What contacts with the bodies of another model took in a step [J/m, J in space]: of what the primaries
+/// lost, and of it by sliding.
+struct JointWork {
+  double contact = 0, friction = 0;
+};
+
 /// The bonded-particle model: a grain is an aggregate of rigid primaries that attract each other and touch by
 /// contact dynamics (the paper's BPM-CD). In a box the grains are exhausted where their primaries are packed
 /// so densely that no smaller box holds them: rigid disks have no solution past their own random close
@@ -53,6 +61,17 @@ class BondedGrainsOf final : public ModelOf<Dim> {
   std::unique_ptr<ModelOf<Dim>> copy() const override { return std::make_unique<BondedGrainsOf>(*this); }
   /// The first step starts without a guess of the impulses and may take 200 times the sweeps.
   StepReport step(Box<Dim>& box, double dt) override;
+  /// A step in two parts, whose contacts bodies of another model may share (docs/decisions/0080), by
+  /// symplectic Euler: forces, gaps and frames at x, and x+ = x + dt v+. First the velocities without
+  /// contacts; the system keeps references, and its impulses, those of the step before, have not acted. No
+  /// cell, no presses. take_walls before; walls go on by themselves.
+  RigidContactSystem<Dim> begin_joint_step(double dt);
+  /// Once all impulses have acted.
+  StepReport end_joint_step(const SolverReport& solver, double dt, const JointWork& with_others);
+  /// Walls, presses and cell as they are in the box.
+  void take_walls(const Box<Dim>& box);
+  /// Of the coming step: the first one may take more sweeps.
+  SolverOptions solver_options() const;
   void follow(const Mat<Dim>& L) override;
   bool is_exhausted(const StepReport& report, const Box<Dim>& box) const override;
   std::string exhaustion(const Box<Dim>& box) const override;
@@ -74,7 +93,9 @@ class BondedGrainsOf final : public ModelOf<Dim> {
   std::pair<double, double> extent(int axis) const override;
   Energies energies() const override;
   Numbers numbers(const Box<Dim>& box, const Energies& energies) const override;
-  Scene scene(const Box<Dim>& box) const override;
+  Scene scene(const Box<Dim>& box) const override { return scene_with(box, {}); }
+  /// With more forces on primaries, for their pressures.
+  Scene scene_with(const Box<Dim>& box, std::span<const BranchForceOf<Dim>> more) const;
   std::pair<double, double> reach() const override;
   std::vector<GrainView> grains() const override;
   PressBody press_body(const Box<Dim>& box, int axis, double dt) const override;
@@ -82,6 +103,8 @@ class BondedGrainsOf final : public ModelOf<Dim> {
   SolvedContactProblem caught_problem(double dt) override;
 
   const RigidDynamics<Dim>& dynamics() const { return dynamics_; }
+  /// Between the parts of a joint step, when impulses of others act on the primaries.
+  RigidDynamics<Dim>& dynamics() { return dynamics_; }
 
  private:
   /// Work over the run [J/m, J in space].
@@ -91,6 +114,7 @@ class BondedGrainsOf final : public ModelOf<Dim> {
     double energy_start = 0;           // potential energies before the first step
     double height_start = 0;           // of them that of gravity
   };
+  double add_forces(std::span<Vec<Dim>> force);
   void add_work();
   void list_attraction();
   double energy_of_attraction() const;               // inside grains and between them

@@ -82,11 +82,11 @@ void add_surfaces(const std::vector<GrainSurface>& grains, const std::vector<Gra
 /// Outlines and grains of a box, primaries and their contacts always. In space surfaces and contacts of
 /// grains, always.
 template <int Dim>
-Scene BondedGrainsOf<Dim>::scene(const Box<Dim>& box) const {
+Scene BondedGrainsOf<Dim>::scene_with(const Box<Dim>& box, std::span<const BranchForceOf<Dim>> more) const {
   const auto& particles = dynamics_.particles;
   Scene scene;
   std::vector<double> pressure =
-      primary_pressures(dynamics_, attraction_, adhesion_, grain_radius_, impulse_time_);
+      primary_pressures(dynamics_, attraction_, adhesion_, grain_radius_, impulse_time_, more);
   scene.particles["position"] = to_array(particles.position);
   scene.particles["velocity"] = to_array(bodies().velocity);
   scene.particles["radius"] = {1, particles.radius};
@@ -125,8 +125,8 @@ std::vector<GrainView> BondedGrainsOf<Dim>::grains() const {
   return views;
 }
 
-template Scene BondedGrainsOf<2>::scene(const Box<2>&) const;
-template Scene BondedGrainsOf<3>::scene(const Box<3>&) const;
+template Scene BondedGrainsOf<2>::scene_with(const Box<2>&, std::span<const BranchForceOf<2>>) const;
+template Scene BondedGrainsOf<3>::scene_with(const Box<3>&, std::span<const BranchForceOf<3>>) const;
 template std::vector<GrainView> BondedGrainsOf<2>::grains() const;
 template std::vector<GrainView> BondedGrainsOf<3>::grains() const;
 

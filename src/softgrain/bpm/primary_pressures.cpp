@@ -2,7 +2,6 @@
 
 #include "softgrain/contact/tangents.hpp"
 #include "softgrain/geometry/ball.hpp"
-#include "softgrain/observe/stress.hpp"
 
 namespace softgrain {
 
@@ -10,12 +9,13 @@ template <int Dim>
 std::vector<double> primary_pressures(const RigidDynamics<Dim>& dynamics,
                                       const AttractionForcesOf<Dim>& attraction,
                                       const SurfaceAttraction<Dim>& adhesion,
-                                      std::span<const double> grain_radius, double impulse_time) {
+                                      std::span<const double> grain_radius, double impulse_time,
+                                      std::type_identity_t<std::span<const BranchForceOf<Dim>>> more) {
   const auto& particles = dynamics.particles;
   const auto& contacts = dynamics.contacts;
   const int n = particles.size();
   const auto attracts_from = [&](int c) { return impulse_time > 0 && c >= contacts.blocks.back().begin(); };
-  std::vector<BranchForceOf<Dim>> forces;
+  std::vector<BranchForceOf<Dim>> forces(more.begin(), more.end());
   for (int c = 0; c < contacts.size(); ++c) {
     const double pull = attracts_from(c) ? adhesion.force(particles, contacts, c) : 0;
     if (!(contacts.impulse[c][0] > 0) && !(pull > 0)) continue;
@@ -49,9 +49,9 @@ std::vector<double> primary_pressures(const RigidDynamics<Dim>& dynamics,
 
 template std::vector<double> primary_pressures<2>(const RigidDynamics<2>&, const AttractionForcesOf<2>&,
                                                   const SurfaceAttraction<2>&, std::span<const double>,
-                                                  double);
+                                                  double, std::span<const BranchForceOf<2>>);
 template std::vector<double> primary_pressures<3>(const RigidDynamics<3>&, const AttractionForcesOf<3>&,
                                                   const SurfaceAttraction<3>&, std::span<const double>,
-                                                  double);
+                                                  double, std::span<const BranchForceOf<3>>);
 
 }  // namespace softgrain

@@ -79,6 +79,16 @@ Violation nlgs_sweep(System& system, std::span<Vec<Dim>> impulse, std::span<cons
   return violation;
 }
 
+/// The system's own sweep, or the plain one.
+template <int Dim, ContactSystem<Dim> System>
+Violation sweep_once(System& system, std::span<Vec<Dim>> impulse, std::span<const double> friction,
+                     const SolverOptions& options) {
+  if constexpr (HasOwnSweep<System, Dim>)
+    return system.sweep(impulse, friction, options);
+  else
+    return nlgs_sweep<Dim>(system, impulse, friction, options.relaxation);
+}
+
 /// Sweeps until the law holds everywhere to the tolerance, or max_sweeps. `sweep(measured)` is one sweep; it
 /// returns its violation [m/s] only if `measured`, as every sweep that may be the last is.
 template <class Sweep>
@@ -108,11 +118,7 @@ SolverReport solve_nlgs(System& system, std::span<Vec<Dim>> impulse, std::span<c
   const auto sweep = [&](bool /*measured*/) {
     if constexpr (Extrapolates<System>)
       if (options.extrapolated) ahead.go_ahead(system, impulse);
-    Violation violation;
-    if constexpr (HasOwnSweep<System, Dim>)
-      violation = system.sweep(impulse, friction, options);
-    else
-      violation = nlgs_sweep<Dim>(system, impulse, friction, options.relaxation);
+    const Violation violation = sweep_once<Dim>(system, impulse, friction, options);
     ahead.see(violation);
     return violation;
   };

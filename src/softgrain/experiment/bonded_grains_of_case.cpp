@@ -87,19 +87,12 @@ BondedGrainsSetupOf<Dim> setup_between_walls(const Case& c) {
           .sigma_I = cohesive_pressure<Dim>(attraction_of(c), mean_distance)};
 }
 
-/// sigma_I is the same in every grain of a kind. A rigid grain is one primary.
+/// sigma_I is the same in every grain of a kind.
 template <int Dim>
-BondedGrainsSetupOf<Dim> setup_in_a_box(const Case& c) {
-  const BoxSampleOf<Dim> box = box_sample_of<Dim>(c);
+BondedGrainsSetupOf<Dim> setup_of_sample(const Case& c, BpmSampleOf<Dim> sample,
+                                         const std::vector<PlacedGrainOf<Dim>>& grains) {
   std::vector<Case> kind;
-  std::vector<AggregateLibrary> options;
-  std::vector<std::vector<AggregateOf<Dim>>> library;
-  for (int k = 0; k < kinds_of(c); ++k) {
-    kind.push_back(case_of_kind(c, k));
-    options.push_back(library_of(kind.back()));
-    library.push_back(prepare_library<Dim>(options.back()));
-  }
-  BpmSampleOf<Dim> sample = fill_box(box, library, options);
+  for (int k = 0; k < kinds_of(c); ++k) kind.push_back(case_of_kind(c, k));
   const double smallest = *std::min_element(sample.mean_distance.begin(), sample.mean_distance.end());
   BondedGrainsSetupOf<Dim> setup{.particles = std::move(sample.particles),
                                  .grain_radius = {},
@@ -112,10 +105,10 @@ BondedGrainsSetupOf<Dim> setup_in_a_box(const Case& c) {
                                  .sigma_I = least_of_kinds(with_bonded_kinds(c), [](const Case& of_kind) {
                                    return of_kind.bpm.cohesive_pressure;
                                  })};
-  for (std::size_t g = 0; g < box.grains.size(); ++g) {
-    const Case::Bpm& bpm = kind[static_cast<std::size_t>(box.grains[g].kind)].bpm;
-    setup.grain_radius.push_back(box.grains[g].radius);
-    setup.kind.push_back(box.grains[g].kind);
+  for (std::size_t g = 0; g < grains.size(); ++g) {
+    const Case::Bpm& bpm = kind[static_cast<std::size_t>(grains[g].kind)].bpm;
+    setup.grain_radius.push_back(grains[g].radius);
+    setup.kind.push_back(grains[g].kind);
     setup.laws.push_back(
         {.F0 = attraction_with<Dim>(bpm.cohesive_pressure, sample.mean_distance[g]), .gamma = bpm.exponent});
   }
@@ -134,12 +127,9 @@ void refuse_adhesion_of_rigid(const Case& c, const PairAdhesion& pair) {
   }
 }
 
-}  // namespace
-
+/// What the case says of all grains.
 template <int Dim>
-PlacedModelOf<Dim> bonded_grains_of(const Case& c) {
-  const double dt = checked_bonded_time_step(c);
-  BondedGrainsSetupOf<Dim> setup = is_in_a_box(c) ? setup_in_a_box<Dim>(c) : setup_between_walls<Dim>(c);
+void complete(const Case& c, BondedGrainsSetupOf<Dim>& setup) {
   setup.friction = {.inside = {},
                     .between = c.contact.friction,
                     .wall = c.contact.wall_friction,
@@ -151,6 +141,38 @@ PlacedModelOf<Dim> bonded_grains_of(const Case& c) {
   setup.options = rigid_step_options(c);
   setup.density = largest_of_kinds(c, [](const Case& kind) { return kind.grain.density; });
   setup.gravity = gravity_of<Dim>(c);
+}
+
+}  // namespace
+
+template <int Dim>
+BpmSampleOf<Dim> filled_box(const Case& c, const BoxSampleOf<Dim>& box) {
+  std::vector<AggregateLibrary> options;
+  std::vector<std::vector<AggregateOf<Dim>>> library;
+  for (int k = 0; k < kinds_of(c); ++k) {
+    options.push_back(library_of(case_of_kind(c, k)));
+    library.push_back(prepare_library<Dim>(options.back()));
+  }
+  return fill_box(box, library, options);
+}
+
+BondedGrainsSetup bonded_setup(const Case& c, BpmSample sample, const std::vector<PlacedGrain>& grains) {
+  BondedGrainsSetup setup = setup_of_sample<2>(c, std::move(sample), grains);
+  complete(c, setup);
+  return setup;
+}
+
+template <int Dim>
+PlacedModelOf<Dim> bonded_grains_of(const Case& c) {
+  const double dt = checked_bonded_time_step(c);
+  BondedGrainsSetupOf<Dim> setup;
+  if (is_in_a_box(c)) {
+    const BoxSampleOf<Dim> box = box_sample_of<Dim>(c);
+    setup = setup_of_sample<Dim>(c, filled_box(c, box), box.grains);
+  } else {
+    setup = setup_between_walls<Dim>(c);
+  }
+  complete(c, setup);
   Box<Dim> box(setup.particles.walls);
   box.cell = setup.particles.cell;
   return {std::make_unique<BondedGrainsOf<Dim>>(std::move(setup)), std::move(box), dt};
@@ -158,5 +180,7 @@ PlacedModelOf<Dim> bonded_grains_of(const Case& c) {
 
 template PlacedModelOf<2> bonded_grains_of<2>(const Case&);
 template PlacedModelOf<3> bonded_grains_of<3>(const Case&);
+template BpmSample filled_box<2>(const Case&, const BoxSample&);
+template BpmSampleOf<3> filled_box<3>(const Case&, const BoxSampleOf<3>&);
 
 }  // namespace softgrain

@@ -5,6 +5,7 @@
 #include "softgrain/experiment/create.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
+#include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/sample.hpp"
 #include "softgrain/experiment/shape_of_case.hpp"
 
@@ -39,7 +40,7 @@ Case twin_of(Case c) {
 
 void check_case(const Case& c) {
   check_time_step(c);
-  const bool bpm = is_bonded(c);
+  const bool bpm = has_bonded(c);
   if (estimate(c).particles <= (bpm ? few_primaries : few_points)) {
     create_any_simulation(c);
     return;

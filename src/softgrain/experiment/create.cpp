@@ -2,6 +2,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
+#include "softgrain/experiment/kinds.hpp"
 #include "softgrain/experiment/stages_of_case.hpp"
 
 namespace softgrain {
@@ -31,7 +32,9 @@ std::unique_ptr<Simulation> create_simulation(const Case& c) {
           "not yet: a simulation in memory with experiment.dimension = 3; `softgrain run` carries such a "
           "case out");
   check_loading(c);
-  return with_loading(c, is_bonded(c) ? bonded_grains_of<2>(c) : elastic_grains_of(c));
+  return with_loading(c, is_mixed(c)    ? mixed_grains_of(c)
+                         : is_bonded(c) ? bonded_grains_of<2>(c)
+                                        : elastic_grains_of(c));
 }
 
 }  // namespace softgrain

@@ -6,6 +6,7 @@
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/experiment/adhesion_of_case.hpp"
+#include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/grains_of_case.hpp"
 #include "softgrain/experiment/kinds.hpp"
@@ -127,19 +128,29 @@ PlacedModel implicit_grains(const Case& c, SoftGrains grains, Box<2> box, double
   return {std::make_unique<ElasticGrains<ImplicitDynamics>>(std::move(dynamics)), std::move(box), dt};
 }
 
+ExplicitOptions explicit_options_of(const Case& c) {
+  return {.damping_share = damping_share,
+          .friction = c.contact.friction,
+          .wall_friction = c.contact.wall_friction,
+          .pair_friction = pair_friction_of(c),
+          .adhesion = adhesion_of(c),
+          .gravity = gravity_of(c),
+          .damping = c.mpm.damping};
+}
+
 PlacedModel explicit_grains(const Case& c, SoftGrains grains, Box<2> box, double smallest_radius) {
   const double dt = c.time.step > 0             ? c.time.step
                     : grains.fastest_wave() > 0 ? stable_time_step(grains)
                                                 : implicit_time_step(c, smallest_radius);
-  const ExplicitOptions options{.damping_share = damping_share,
-                                .friction = c.contact.friction,
-                                .wall_friction = c.contact.wall_friction,
-                                .pair_friction = pair_friction_of(c),
-                                .adhesion = adhesion_of(c),
-                                .gravity = gravity_of(c),
-                                .damping = c.mpm.damping};
-  ExplicitDynamics dynamics(std::move(grains), box, options);
+  ExplicitDynamics dynamics(std::move(grains), box, explicit_options_of(c));
   return {std::make_unique<ElasticGrains<ExplicitDynamics>>(std::move(dynamics)), std::move(box), dt};
+}
+
+std::vector<GrainPlacement> placements(const Case& c, const std::vector<PlacedGrain>& grains) {
+  const std::vector<std::shared_ptr<const Topology>> shapes = shapes_of(c);
+  std::vector<GrainPlacement> placed;
+  for (const PlacedGrain& grain : grains) placed.push_back(placement(shapes[grain.kind], grain));
+  return placed;
 }
 
 }  // namespace
@@ -164,6 +175,7 @@ double longest_time_step(const Case& c) {
   if (c.mpm.integrator != Integrator::symplectic_euler) return no_limit;
   const auto longest = [](const Case& of_kind) {
     if (is_rigid(of_kind)) return no_limit;
+    if (is_bonded(of_kind)) return critical_bond_step(of_kind);
     const double radius = !is_in_a_box(of_kind)           ? of_kind.grain.radius
                           : of_kind.sample.placed.empty() ? diameter_law(of_kind.sample).least() / 2
                                                           : of_kind.sample.smallest_diameter / 2;
@@ -183,19 +195,22 @@ void check_time_step(const Case& c) {
           1e6 * c.time.step, 1e6 * longest);
 }
 
+ExplicitDynamics explicit_dynamics_of(const Case& c, const std::vector<PlacedGrain>& grains,
+                                      const Box<2>& box) {
+  return {grains_of(c, placements(c, grains)), box, explicit_options_of(c)};
+}
+
 PlacedModel elastic_grains_of(const Case& c) {
   check_time_step(c);
   if (is_lattice(c)) return lattice_grains_of(c);
-  const std::vector<std::shared_ptr<const Topology>> shapes = shapes_of(c);
   std::vector<GrainPlacement> placed;
   Box<2> box;
   if (is_in_a_box(c)) {
     const BoxSample sample = sample_box(c);
-    for (const PlacedGrain& grain : sample.grains) placed.push_back(placement(shapes[grain.kind], grain));
+    placed = placements(c, sample.grains);
     box = box_of(sample);
   } else {
-    placed.push_back(
-        placement(shapes[0], {.centre = {}, .radius = c.grain.radius, .angle = angle_between_walls(c)}));
+    placed = placements(c, {{.centre = {}, .radius = c.grain.radius, .angle = angle_between_walls(c)}});
     const auto [low, high] = between_walls(c);
     box = walls_at(low, high);
   }

@@ -216,14 +216,16 @@ double disk(const Case& c, const Estimate& e) {
   return frames * (20e3 + bytes_of_particle * e.particles + (bpm ? of_surface * grains(c) : 0));
 }
 
+/// Of the program alone [bytes].
+constexpr double program_memory = 35e6;
+
 /// Peak of a whole run [bytes], as measured: the program, its state, and a snapshot while it is written. A
 /// batch of 8 elastic grains takes the same when it is not full.
 double memory(const Case& c, const Estimate& e) {
-  constexpr double program = 35e6;
-  if (is_bonded(c)) return program + 2300 * e.particles + 7000 * grains(c);
-  if (is_in_space(c)) return program + 100 * e.particles + 1e6 * c.mpm.cells;
+  if (is_bonded(c)) return program_memory + 2300 * e.particles + 7000 * grains(c);
+  if (is_in_space(c)) return program_memory + 100 * e.particles + 1e6 * c.mpm.cells;
   const double in_batches = std::ceil(grains(c) / 8) * 8 * e.particles / grains(c);
-  return program + 550 * e.particles + 350 * in_batches;
+  return program_memory + 550 * e.particles + 350 * in_batches;
 }
 
 }  // namespace
@@ -237,7 +239,10 @@ double least_energy(const Case& c) {
   return grain_area(c) * std::max(kinetic, elastic);
 }
 
-Estimate estimate(const Case& the_case) {
+namespace {
+
+/// Of grains of one engine.
+Estimate estimate_in(double steps, const Case& the_case) {
   constexpr double second = 1.0 / 3600;  // [h]
   const bool bpm = is_bonded(the_case);
   Estimate result;
@@ -245,12 +250,29 @@ Estimate estimate(const Case& the_case) {
   const double contacts_of_primary = is_in_space(the_case) ? 4.2 : 2.2;
   result.contacts =
       bpm ? contacts_of_primary * result.particles : grains(the_case) * 3.3 * the_case.mpm.cells;
-  result.steps = std::round(loading_time(the_case) / first_time_step(the_case));
+  result.steps = steps;
   result.memory = memory(the_case, result);
   result.hours =
       (result.steps * seconds_of_step(the_case, result) + seconds_of_rows(the_case, result)) * second;
   result.disk = disk(the_case, result);
   return result;
+}
+
+}  // namespace
+
+Estimate estimate(const Case& the_case) {
+  const double steps = std::round(loading_time(the_case) / first_time_step(the_case));
+  if (!is_mixed(the_case)) return estimate_in(steps, the_case);
+  PartOfCase bonded = part_of(the_case, GrainModel::bpm);
+  bonded.the_case.solver.precision = Precision::full;
+  Estimate both = estimate_in(steps, part_of(the_case, GrainModel::mpm).the_case);
+  const Estimate more = estimate_in(steps, bonded.the_case);
+  both.particles += more.particles;
+  both.contacts += more.contacts;
+  both.memory += more.memory - program_memory;
+  both.hours += more.hours;
+  both.disk += more.disk;
+  return both;
 }
 
 }  // namespace softgrain

@@ -26,6 +26,31 @@ Case case_of_kind(Case c, int k) {
   return c;
 }
 
+PartOfCase part_of(const Case& whole, GrainModel model) {
+  PartOfCase part{.the_case = whole, .kinds = {}, .number = {}};
+  Case& c = part.the_case;
+  c.experiment.model = model;
+  c.sample.grains = 0;
+  c.kinds.clear();
+  c.pairs.clear();
+  for (const Case::Kind& kind : whole.kinds) {
+    const bool here = (kind.model == GrainModel::mpm) == (model == GrainModel::mpm);
+    part.number.push_back(here ? static_cast<int>(c.kinds.size()) : -1);
+    if (!here) continue;
+    part.kinds.push_back(static_cast<int>(part.number.size()) - 1);
+    c.kinds.push_back(kind);
+    c.sample.grains += kind.grains;
+  }
+  const auto number = [&](int kind) { return kind == Case::Pair::wall ? kind : part.number[kind]; };
+  for (Case::Pair pair : whole.pairs) {
+    const bool at_wall = pair.other == Case::Pair::wall;
+    pair.kind = number(pair.kind);
+    pair.other = number(pair.other);
+    if (pair.kind >= 0 && (at_wall || pair.other >= 0)) c.pairs.push_back(pair);
+  }
+  return part;
+}
+
 Case with_bonded_kinds(Case c) {
   std::erase_if(c.kinds, [](const Case::Kind& kind) { return kind.model == GrainModel::rigid; });
   return c;

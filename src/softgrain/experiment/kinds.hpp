@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <vector>
 
 #include "softgrain/experiment/case.hpp"
 
@@ -7,6 +8,27 @@ namespace softgrain {
 
 /// How many kinds of grains a case has: one, unless it lists them.
 inline int kinds_of(const Case& c) { return c.kinds.empty() ? 1 : static_cast<int>(c.kinds.size()); }
+
+inline bool has_kind_of(const Case& c, GrainModel model) {
+  return std::any_of(c.kinds.begin(), c.kinds.end(),
+                     [&](const Case::Kind& kind) { return kind.model == model; });
+}
+/// Bonded grains among elastic ones: the case's own model is mpm.
+inline bool is_mixed(const Case& c) {
+  return has_kind_of(c, GrainModel::bpm) && has_kind_of(c, GrainModel::mpm);
+}
+/// Are all grains, or some, bonded?
+inline bool has_bonded(const Case& c) { return is_bonded(c) || is_mixed(c); }
+
+/// Some of the kinds of a case, with the pairs among them, numbered anew.
+struct PartOfCase {
+  Case the_case;
+  std::vector<int> kinds;   ///< their numbers in the whole case
+  std::vector<int> number;  ///< (kinds of the whole case) of each here, or -1
+};
+/// Of a mixed case its elastic kinds, or (bpm) its bonded kinds and the rigid ones, which are single
+/// primaries among them.
+PartOfCase part_of(const Case& whole, GrainModel model);
 
 /// The case with grains of its k-th kind alone: what `grain`, `bpm`, `mpm`, `sample` and `experiment.model`
 /// say is that kind's, and the number of grains too. Of a case of one kind that case itself. Of several,

@@ -137,7 +137,7 @@ Case complete_sample(Case c) {
 }
 
 AggregateLibrary library_of(const Case& c) {
-  if (is_rigid(c)) return {.count = 1, .primaries = 1, .density = c.grain.density};
+  if (!is_bonded(c)) return {.count = 1, .primaries = 1, .density = c.grain.density};
   return {.count = c.bpm.library,
           .primaries = c.bpm.primaries,
           .size_ratio = c.bpm.size_ratio,

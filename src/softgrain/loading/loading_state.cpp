@@ -29,7 +29,7 @@ void visit_numbers(StateVisitor& visit, const Field& field, std::array<double, N
 
 template <int Dim>
 void LoadingOf<Dim>::visit_stage(StateVisitor& visit) {
-  const auto number = [&](std::string_view name, std::string_view unit, std::string_view text, auto& value) {
+  const auto number = [&](const char* name, std::string_view unit, std::string_view text, auto& value) {
     visit({name, unit, Owner::run, Role::state, text}, value);
   };
   number("stage", "", "of the coming step", stage_);
@@ -49,14 +49,14 @@ void LoadingOf<Dim>::visit_stage(StateVisitor& visit) {
 
 template <int Dim>
 void LoadingOf<Dim>::visit_stresses(StateVisitor& visit) {
-  const auto stresses = [&](std::string_view name, std::string_view text, OfParts& values) {
+  const auto stresses = [&](const char* name, std::string_view text, OfParts& values) {
     visit_numbers(visit, {name, "Pa", Owner::run, Role::state, text}, values);
   };
   stresses("stress_mean", "over 0.1 % of strain, of yy, xx, bottom, top, left, right, xy", stress_);
   stresses("stress_mean_of_mean", "the same mean of that mean", stress_twice_);
   stresses("stress_largest", "so far", largest_);
   stresses("stress_at_stage", "that mean where the stage began", stress_at_stage_);
-  const auto press = [&](std::string_view name, std::string_view unit, std::string_view text,
+  const auto press = [&](const char* name, std::string_view unit, std::string_view text,
                          OfParts& values) {
     visit_numbers(visit, {name, unit, Owner::run, Role::state, text}, values);
   };
@@ -69,7 +69,7 @@ void LoadingOf<Dim>::visit_stresses(StateVisitor& visit) {
 
 template <int Dim>
 void LoadingOf<Dim>::visit_held(StateVisitor& visit) {
-  const auto declare = [&](std::string_view name, std::string_view text, double HeldStress::*member) {
+  const auto declare = [&](const char* name, std::string_view text, double HeldStress::*member) {
     std::array<double, 5> values{};
     for (std::size_t d = 0; d < held_.size(); ++d) values[d] = held_[d].*member;
     values.back() = unkept_.*member;
@@ -85,7 +85,7 @@ void LoadingOf<Dim>::visit_held(StateVisitor& visit) {
   declare("held_squares", "of the squares of these", &HeldStress::squares);
   declare("held_largest", "the largest of these", &HeldStress::largest);
   declare("held_window", "of the present time so far", &HeldStress::window);
-  const auto number = [&](std::string_view name, std::string_view text, int& value) {
+  const auto number = [&](const char* name, std::string_view text, int& value) {
     visit({name, "", Owner::run, Role::sum, text}, value);
   };
   number("unkept_stage", "the first whose stress was not kept; -1: none", unkept_stage_);

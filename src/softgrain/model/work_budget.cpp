@@ -23,7 +23,7 @@ Numbers elastic_numbers(const WorkBudget& work, double elastic) {
 }
 
 void visit_work(WorkBudget& work, StateVisitor& visit) {
-  const auto declare = [&](std::string_view name, std::string_view text, double& value) {
+  const auto declare = [&](const char* name, std::string_view text, double& value) {
     visit({name, "J/m", Owner::run, Role::sum, text}, value);
   };
   declare("work_of_walls", "done by the walls", work.walls);

@@ -35,17 +35,30 @@ RigidDynamics<Dim>::RigidDynamics(RigidParticles<Dim> bodies, FrictionRule frict
 
 template <int Dim>
 StepReport RigidDynamics<Dim>::step(const ForceField<Dim>& field, double dt) {
+  begin_step(field, dt, dt / 2);
+  // gaps and frames at x_m
+  const SolverReport solver = solve(dt);  // v+ = v_free + M^-1 H p,  0 <= u_n + q_n _|_ p_n >= 0
+  return end_step(solver, dt, dt / 2);
+}
+
+template <int Dim>
+void RigidDynamics<Dim>::begin_step(const ForceField<Dim>& field, double dt, double lead) {
   take_own_contacts();
   list_pressed_walls();
   for (const Press& press : particles.presses) set_press_speed(particles, press, press.speed);
-  drift(particles, dt / 2);  // x_m = x + dt/2 v
+  drift(particles, lead);  // x_m = x + dt/2 v
   if (renew_stale_lists(reference, particles, [&] { know_all(); })) rebuild_contacts();
   kick(field, dt);  // v_free = v + dt M^-1 F(x_m)
-  // gaps and frames at x_m
-  const SolverReport solver = solve(dt);  // v+ = v_free + M^-1 H p,  0 <= u_n + q_n _|_ p_n >= 0
+}
+
+template <int Dim>
+StepReport RigidDynamics<Dim>::end_step(const SolverReport& solver, double dt, double lead) {
+  if (options.precision == Precision::full)
+    parallel_for(static_cast<int>(contacts.blocks.size()),
+                 [&](int k) { overlaps_[k] = overlaps_of(contacts.blocks[k]); });
   account_work(dt);
   if (options.law.restitution > 0 && work.contact > 0 && friction_work() > 0) temper_restitution(dt);
-  drift(particles, dt / 2);  // x = x_m + dt/2 v+
+  drift(particles, dt - lead);  // x = x_m + dt/2 v+
   if (options.law.push_out > 0 && options.law.activation != Activation::anticipated) push_out(dt);
   end_step_of_presses(dt);
   return report(solver);
@@ -83,53 +96,6 @@ void RigidDynamics<Dim>::list_pressed_walls() {
   if (pressed == pressed_) return;
   pressed_ = std::move(pressed);
   list_between_again();
-}
-
-/// Of the force field on the walls of a press, along their normals [N/m].
-template <int Dim>
-double RigidDynamics<Dim>::pull_on(const Press& press) const {
-  double pull = 0;
-  for (std::size_t w = 0; w < particles.walls.size(); ++w)
-    if (press.share[w] != 0)
-      pull +=
-          press.share[w] * dot(force_[particles.wall_body(static_cast<int>(w))], particles.walls[w].normal);
-  return pull;
-}
-
-/// The presses under the impulses that their contacts carry now.
-template <int Dim>
-PushedBodies RigidDynamics<Dim>::pressed_walls(double dt) const {
-  PushedBodies pushed;
-  if (particles.presses.empty()) return pushed;
-  for (const Press& press : particles.presses)
-    pushed.bodies.push_back({.free = press.free_speed(dt) + dt * press.mobility(dt) * pull_on(press),
-                             .mobility = press.mobility(dt),
-                             .most = press.most,
-                             .assumed = press.speed});
-  const ContactBatch& listed = contacts.blocks.back().pressed;
-  for (int c = listed.begin; c < listed.end; ++c) {
-    const std::size_t wall = contacts.body_b[c] - particles.size();
-    for (std::size_t k = 0; k < particles.presses.size(); ++k)
-      if (const double share = particles.presses[k].share[wall]; share != 0)
-        pushed.add({.contact = c, .body = static_cast<int>(k), .share = share}, contacts.impulse[c][0],
-                   contacts.size());
-  }
-  return pushed;
-}
-
-template <int Dim>
-void RigidDynamics<Dim>::move_presses(double dt) {
-  const PushedBodies pushed = pressed_walls(dt);
-  for (std::size_t k = 0; k < particles.presses.size(); ++k)
-    set_press_speed(particles, particles.presses[k], pushed.bodies[k].velocity());
-}
-
-template <int Dim>
-void RigidDynamics<Dim>::end_step_of_presses(double dt) {
-  const PushedBodies pushed = pressed_walls(dt);
-  for (std::size_t k = 0; k < particles.presses.size(); ++k)
-    particles.presses[k].end_step(pushed.bodies[k].velocity(),
-                                  pushed.bodies[k].push - dt * pull_on(particles.presses[k]), dt);
 }
 
 /// Keeps the velocities of the start.
@@ -171,21 +137,26 @@ template <int Dim>
 SolverReport RigidDynamics<Dim>::solve(double dt) {
   SolverOptions solver = options.solver;
   if (solver.velocity_scale == 0) solver.velocity_scale = 2 * mean_radius_ / dt;
-  const int blocks = static_cast<int>(contacts.blocks.size());
-  offset_.resize(contacts.size());
-  overlaps_.resize(blocks);
   for (const Press& press : particles.presses) set_press_speed(particles, press, press.speed);
-  contacts.cell = particles.cell;
-  RigidContactSystem<Dim> system(particles, contacts, offset_);
+  RigidContactSystem<Dim> system = contact_system(dt);
   if (options.precision == Precision::single) return solve_in_single_precision(system, solver, dt);
-  parallel_ranges(contacts.size(), [&](int begin, int end) { prepare(begin, end, dt); });
   PushedBodies pressed = pressed_walls(dt);
   system.push(pressed);
   system.apply_impulses(contacts.impulse);
   const SolverReport report = solve_nlgs<Dim>(system, contacts.impulse, contacts.friction, solver);
   move_presses(dt);
-  parallel_for(blocks, [&](int k) { overlaps_[k] = overlaps_of(contacts.blocks[k]); });
   return report;
+}
+
+/// In single precision the sweeps prepare the contacts, block by block.
+template <int Dim>
+RigidContactSystem<Dim> RigidDynamics<Dim>::contact_system(double dt) {
+  offset_.resize(contacts.size());
+  overlaps_.resize(contacts.blocks.size());
+  contacts.cell = particles.cell;
+  if (options.precision == Precision::full)
+    parallel_ranges(contacts.size(), [&](int begin, int end) { prepare(begin, end, dt); });
+  return {particles, contacts, offset_};
 }
 
 /// (grains + 1) of each grain.

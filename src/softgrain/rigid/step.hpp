@@ -63,6 +63,15 @@ class RigidDynamics {
   /// finite.
   StepReport step(const ForceField<Dim>& field, double dt);
 
+  /// The same in parts, whose contacts other bodies may share. First lists, and the velocities without
+  /// contacts, under the forces at x + lead v: lead = dt/2 in Moreau's scheme, 0 in symplectic Euler's.
+  void begin_step(const ForceField<Dim>& field, double dt, double lead);
+  /// The contacts with gaps and frames at the present positions, to be solved in full precision; their
+  /// impulses have not acted. Keeps references.
+  RigidContactSystem<Dim> contact_system(double dt);
+  /// x + (dt - lead) v+, work and overlaps. Raises NumericalError as step.
+  StepReport end_step(const SolverReport& solver, double dt, double lead);
+
   RigidParticles<Dim> particles;
   RigidContacts<Dim> contacts;
   NeighbourReference<Dim> reference;  ///< of the list of contacts; force fields may share it

@@ -56,13 +56,13 @@ constexpr double jammed_overlap = 0.05;
 
 /// One step. Raises NumericalError where it fails; of rigid grains alone that shows that they are jammed.
 template <class Dynamics>
-SoftStepReport step_unless_jammed(Dynamics& dynamics, double dt) {
+SoftStepReport step_unless_jammed(const Dynamics& dynamics, const std::function<SoftStepReport()>& advance) {
   const NumericalError jammed(
       "the rigid grains are jammed: walls that go on would push them into one another; end at a stress "
       "(loading.max_stress), or at a smaller strain or packing fraction");
   const bool rigid = dynamics.grains.fastest_wave() == 0;
   try {
-    const SoftStepReport report = dynamics.step(dt);
+    const SoftStepReport report = advance();
     if (rigid && report.overlap_max > jammed_overlap) throw jammed;
     return report;
   } catch (const NumericalError&) {
@@ -74,9 +74,9 @@ SoftStepReport step_unless_jammed(Dynamics& dynamics, double dt) {
 }  // namespace
 
 template <class Dynamics>
-StepReport ElasticGrains<Dynamics>::step(Box<Dim>& box, double dt) {
+StepReport ElasticGrains<Dynamics>::step_by(Box<Dim>& box, const std::function<SoftStepReport()>& advance) {
   const BoxLoan loan(box, dynamics_.box);
-  const SoftStepReport soft = step_unless_jammed(dynamics_, dt);
+  const SoftStepReport soft = step_unless_jammed(dynamics_, advance);
   if constexpr (!std::is_same_v<Dynamics, ImplicitDynamics>)
     if (const int grain = dynamics_.grains.runaway_grain(dynamics_.impulse_time); grain >= 0)
       throw NumericalError(fmt::format(

@@ -1,5 +1,7 @@
 #pragma once
+#include <functional>
 #include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -22,7 +24,14 @@ class ElasticGrains final : public ModelOf<Dynamics::dimension> {
       : dynamics_(std::move(dynamics)), walls_(static_cast<int>(dynamics_.box.walls.size())) {}
 
   std::unique_ptr<ModelOf<Dim>> copy() const override { return std::make_unique<ElasticGrains>(*this); }
-  StepReport step(Box<Dim>& box, double dt) override;
+  StepReport step(Box<Dim>& box, double dt) override {
+    return step_by(box, [&] { return dynamics_.step(dt); });
+  }
+  /// The same of an explicit step whose contacts bodies of another model share.
+  StepReport joint_step(Box<Dim>& box, double dt, const JointSolve<Dim>& joint)
+      requires(!std::is_same_v<Dynamics, ImplicitDynamics>) {
+    return step_by(box, [&] { return dynamics_.step(dt, joint); });
+  }
   void follow(const Mat<Dim>& L) override {
     dynamics_.grains.know_all();
     dynamics_.work.walls += add_affine_velocity(dynamics_.grains, L);
@@ -50,12 +59,15 @@ class ElasticGrains final : public ModelOf<Dynamics::dimension> {
   SolvedContactProblem caught_problem(double dt) override;
 
   const Dynamics& dynamics() const { return dynamics_; }
+  /// In a joint step, for what bodies of another model give.
+  Dynamics& dynamics() { return dynamics_; }
 
  private:
   /// Steps and iterations since the last row; sub-steps taken back over the run.
   struct Sums {
     double steps = 0, iterations = 0, rejected = 0;
   };
+  StepReport step_by(Box<Dim>& box, const std::function<SoftStepReport()>& advance);
   SoftViewOf<Dim> view() const;
 
   Dynamics dynamics_;

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "softgrain/contact/adhesive_contacts.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/soft/contact_work.hpp"
 #include "softgrain/soft/explicit_step.hpp"
@@ -56,11 +57,38 @@ void ExplicitStep<Dim>::find_contacts(double dt) {
   contacts = std::move(found);
 }
 
+/// v_free, then v+.
+template <int Dim>
+SolverReport ExplicitStep<Dim>::kick_and_solve(double dt, const JointSolve<Dim>& joint) {
+  const bool shared = box.presses.empty() && !adheres();  // their contacts take turns alone
+  LumpedSystem<Dim> system(contacts, outline_, outline_velocity_, inverse_mass_, bodies_, lumped_scratch_,
+                           shared);
+  AdhesiveContacts adhesive;
+  if constexpr (Dim == 2) {
+    adhesive = adhesion_.contacts(grains, contacts, outline_, false, attraction);
+    if (impulse_time <= 0) adhesion_energy = energy_at_start(adhesive);
+  }
+  PushedBodies pressed = pressed_walls(box, contacts, felt(), dt);
+  system.push(pressed);
+  kick(dt);
+  const std::vector<double> friction = friction_by_kind().template of<Dim>(grains, contacts);
+  system.apply_impulses(felt());
+  SolverOptions solver = options.solver;
+  solver.velocity_scale = mean_radius_ / dt;
+  const SolverReport solved =
+      joint ? joint({outline_, outline_velocity_, inverse_mass_, system, impulse, friction, solver})
+            : solve_adhesive<Dim>(system, adhesive, pressed, std::span(impulse), friction, solver);
+  system.gather(impulse);
+  impulse_time = dt;
+  move_presses(box, pressed, dt);
+  return solved;
+}
+
 /// Of grains that frictionless walls alone touch: what they gave in the step before.
 template <int Dim>
 void ExplicitStep<Dim>::take_back_spin() {
   if constexpr (Dim == 2) {
-    const std::vector<Wide> alone = grains_on_smooth_walls_alone(grains, contacts, friction_by_kind());
+    const std::vector<Wide> alone = grains_on_smooth_walls_alone(grains, contacts, friction_by_kind(), met);
     if (std::none_of(alone.begin(), alone.end(), [](const Wide& of_batch) { return any(of_batch > 0.0); }))
       return;
     grains.know_all();  // it looks at whole grains

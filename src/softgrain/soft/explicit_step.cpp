@@ -4,11 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "softgrain/contact/adhesive_contacts.hpp"
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/parallel.hpp"
 #include "softgrain/soft/equilibrium.hpp"
-#include "softgrain/soft/pressed_walls.hpp"
 #include "softgrain/soft/solid_equilibrium.hpp"
 
 namespace softgrain {
@@ -64,7 +62,7 @@ ExplicitStep<Dim>::ExplicitStep(GrainsOf<Dim> soft_grains, Box<Dim> box_of_grain
 }
 
 template <int Dim>
-SoftStepReport ExplicitStep<Dim>::step(double dt) {
+SoftStepReport ExplicitStep<Dim>::step(double dt, const JointSolve<Dim>& joint) {
   SoftStepReport report{.converged = true};
   box.impulse.assign(box.walls.size(), {});
   double rest = dt;
@@ -77,7 +75,7 @@ SoftStepReport ExplicitStep<Dim>::step(double dt) {
           fmt::format("cells are crushed: the stable step has fallen to {:.3g} s, {:.0f} times less than the "
                       "time step; stop at a smaller strain",
                       stable.longest, dt / stable.longest));
-    sub_step(rest / count, report);
+    sub_step(rest / count, joint, report);
     rest = count > 1 ? rest - rest / count : 0;
   }
   if (box.cell.any()) grains.know_all();  // the stress of a cell asks for centres of mass after each step
@@ -103,32 +101,13 @@ void ExplicitStep<Dim>::look_at_cells(double dt) {
 }
 
 template <int Dim>
-void ExplicitStep<Dim>::sub_step(double dt, SoftStepReport& report) {
+void ExplicitStep<Dim>::sub_step(double dt, const JointSolve<Dim>& joint, SoftStepReport& report) {
   for (const Press& press : box.presses) box.set_speed(press, press.speed);
   check_wall_motion(box, dt, smallest_radius_);
   damping_ = {options.damping, dt, box};
   if constexpr (Dim == 2) take_back_spin();
   find_contacts(dt);
-  const bool shared = box.presses.empty() && !adheres();  // their contacts take turns alone
-  LumpedSystem<Dim> system(contacts, outline_, outline_velocity_, inverse_mass_, bodies_, lumped_scratch_,
-                           shared);
-  AdhesiveContacts adhesive;
-  if constexpr (Dim == 2) {
-    adhesive = adhesion_.contacts(grains, contacts, outline_, false, attraction);
-    if (impulse_time <= 0) adhesion_energy = energy_at_start(adhesive);
-  }
-  PushedBodies pressed = pressed_walls(box, contacts, felt(), dt);
-  system.push(pressed);
-  kick(dt);
-  const std::vector<double> friction = friction_by_kind().template of<Dim>(grains, contacts);
-  system.apply_impulses(felt());
-  SolverOptions solver = options.solver;
-  solver.velocity_scale = mean_radius_ / dt;
-  const SolverReport solved =
-      solve_adhesive<Dim>(system, adhesive, pressed, std::span(impulse), friction, solver);
-  system.gather(impulse);
-  impulse_time = dt;
-  move_presses(box, pressed, dt);
+  const SolverReport solved = kick_and_solve(dt, joint);
   outline_.walls = box.walls;
   drift_outline(dt);
   if (grains.has_history()) add_flow();

@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "softgrain/contact/solver_options.hpp"
@@ -16,6 +18,22 @@
 #include "softgrain/soft/stable_step.hpp"
 
 namespace softgrain {
+
+/// The contacts of a sub-step when they are to be solved.
+template <int Dim>
+struct ContactsOfStep {
+  const OutlineStateOf<Dim>& outline;       ///< position: where the outlines would be without forces
+  std::span<ScatteredVec<Dim>> velocity;    ///< (outline vertices) under forces and the impulses so far [m/s]
+  std::span<const double> inverse_mass;     ///< (outline vertices) [m/kg]
+  LumpedSystem<Dim>& system;
+  std::span<Vec<Dim>> impulse;  ///< have acted; the solution
+  std::span<const double> friction;
+  SolverOptions options;
+};
+/// Solves them together with those that bodies of another model have with the outlines. What these give the
+/// grains is its caller's to account for.
+template <int Dim>
+using JointSolve = std::function<SolverReport(const ContactsOfStep<Dim>&)>;
 
 template <int Dim>
 struct ExplicitOptionsOf {
@@ -63,7 +81,7 @@ class ExplicitStep {
   /// One step of dt, in equal sub-steps of at most longest_stable_step: cells are looked at again every so
   /// many of them, more often while they change. Raises NumericalError if a point is inverted or cells are so
   /// deformed that thousands of sub-steps would be needed, naming the grain, and as check_wall_motion.
-  SoftStepReport step(double dt);
+  SoftStepReport step(double dt, const JointSolve<Dim>& joint = {});
 
   /// Impulse of the grains on a wall in the last step [N s/m in the plane].
   const Vec<Dim>& wall_impulse(int wall) const { return box.impulse[wall]; }
@@ -80,6 +98,7 @@ class ExplicitStep {
   double impulse_time = 0;         ///< the step over which they acted [s]
   WorkBudget work;                 ///< since the start; there is no `inertia`
   FlowOfGrains last_flow;          ///< of the last sub-step
+  std::vector<char> met;           ///< (grains) 1: bodies of another model are near; empty: none is
   StableStep stable;
 
  private:
@@ -98,7 +117,8 @@ class ExplicitStep {
   }
   void look_at_cells(double dt);
   double sub_steps(double dt) const;
-  void sub_step(double dt, SoftStepReport& report);
+  void sub_step(double dt, const JointSolve<Dim>& joint, SoftStepReport& report);
+  SolverReport kick_and_solve(double dt, const JointSolve<Dim>& joint);
   void take_back_spin();
   const std::vector<Vec<Dim>>& felt();
   void add_adhesion();

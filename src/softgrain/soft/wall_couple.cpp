@@ -6,8 +6,9 @@ namespace softgrain {
 
 std::vector<Wide> grains_on_smooth_walls_alone(const SoftGrains& grains,
                                                std::span<const OutlineContact> contacts,
-                                               const FrictionByKind& friction) {
-  std::vector<char> at_wall(grains.size(), 0), at_grain(grains.size(), 0);
+                                               const FrictionByKind& friction, std::span<const char> met) {
+  std::vector<char> at_wall(grains.size(), 0), at_grain(met.begin(), met.end());
+  at_grain.resize(grains.size(), 0);
   for (const OutlineContact& c : contacts) {
     (c.wall >= 0 ? at_wall : at_grain)[grains.grain_of_vertex(c.vertex)] = 1;
     if (c.wall < 0) at_grain[grains.grain_of_vertex(c.master[0])] = 1;

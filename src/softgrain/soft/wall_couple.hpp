@@ -13,10 +13,12 @@ namespace softgrain {
 /// (docs/decisions/0034). A couple takes that off such grains: 1 in their lanes, 0 in others.
 ///
 /// Such a grain is round (Topology::round), walls are frictionless for its kind, and all contacts of its
-/// vertices in the list, also open ones, are with walls. (batches)
+/// vertices in the list, also open ones, are with walls. met: (grains) 1 for those near other bodies than
+/// grains and walls; empty: none is. (batches)
 std::vector<Wide> grains_on_smooth_walls_alone(const SoftGrains& grains,
                                                std::span<const OutlineContact> contacts,
-                                               const FrictionByKind& friction);
+                                               const FrictionByKind& friction,
+                                               std::span<const char> met = {});
 
 /// Gives the grains whose lanes in `alone` are 1 the rotation that takes back the angular momentum that
 /// `impulse` gave them about their centres. outline: (outline vertices) where they are [m].

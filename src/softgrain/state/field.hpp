@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "softgrain/math/vec.hpp"
@@ -25,7 +27,7 @@ enum class Role {
 
 /// One array of the state of a simulation, as the struct that owns it declares it.
 struct Field {
-  std::string_view name;  ///< of its dataset
+  std::string name;       ///< of its dataset
   std::string_view unit;  ///< SI, "" for none
   Owner owner = Owner::run;
   Role role = Role::state;
@@ -73,6 +75,7 @@ class StateVisitor {
   }
 
  protected:
+  friend class PartVisitor;
   enum class Length { fixed, any };
   virtual void reals(const Field& field, std::vector<double>& values, std::size_t columns, Length length) = 0;
   virtual void integers(const Field& field, std::vector<std::int64_t>& values, std::size_t columns,
@@ -87,6 +90,31 @@ class StateVisitor {
     rows.resize(values.size() / N);
     for (std::size_t i = 0; i < values.size(); ++i) rows[i / N][static_cast<int>(i % N)] = values[i];
   }
+};
+
+/// Sees the arrays of a part of a state, for the visitor of the whole: "position" with the prefix "bonded_" is
+/// "bonded_position" there.
+class PartVisitor final : public StateVisitor {
+ public:
+  /// Keeps a reference.
+  PartVisitor(StateVisitor& whole, std::string prefix) : whole_(whole), prefix_(std::move(prefix)) {}
+  bool reads() const override { return whole_.reads(); }
+
+ private:
+  void reals(const Field& field, std::vector<double>& values, std::size_t columns, Length length) override {
+    whole_.reals(named(field), values, columns, length);
+  }
+  void integers(const Field& field, std::vector<std::int64_t>& values, std::size_t columns,
+                Length length) override {
+    whole_.integers(named(field), values, columns, length);
+  }
+  Field named(Field field) const {
+    field.name = prefix_ + field.name;
+    return field;
+  }
+
+  StateVisitor& whole_;
+  std::string prefix_;
 };
 
 /// A matrix, row by row.

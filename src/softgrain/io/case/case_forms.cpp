@@ -23,7 +23,7 @@ std::vector<FormKey> all_forms() {
   return {
 
       {"kind.name", Takes::text, {}, "name of the kind, for [[pair]], for --set kind.NAME.key=value and for the column kind of a sample's file; several kinds need one each"},
-      stands_for("kind.model", {"experiment.model"}, "model of these grains; rigid kinds mix with elastic or with bonded ones"),
+      stands_for("kind.model", {"experiment.model"}, "model of these grains; kinds of all models mix, bonded and elastic ones in the plane with mpm.integrator explicit"),
       stands_for("kind.number", {"sample.grains"}, "grains of this kind in the box"),
       number("kind.share", "", positive, "share of the area of sample.grains grains that this kind has, in proportion; all kinds have one, or all a number"),
       stands_for("kind.shape", {"grain.shape"}, "shape of the undeformed grain; left out: a disk, or outline or surface where one is given"),
@@ -141,7 +141,7 @@ const std::vector<TableOfKeys>& form_tables() {
       {"kind",
        "A kind of grains, instead of [grain], [sample] and the material's keys of [mpm] or [bpm]. Several "
        "kinds\n"
-       "(rigid grains and elastic or bonded ones, in a box) mix in one sample; what [grain], [mpm], [bpm] "
+       "(rigid, elastic and bonded grains, in a box) mix in one sample; what [grain], [mpm], [bpm] "
        "and [sample] say\n"
        "then holds for the kinds that do not say it themselves."},
       {"pair",

@@ -9,6 +9,7 @@
 #include "softgrain/experiment/kinds.hpp"
 #include "softgrain/io/case/case_forms.hpp"
 #include "softgrain/io/case/case_value.hpp"
+#include "softgrain/io/case/words.hpp"
 
 namespace softgrain {
 namespace {
@@ -41,7 +42,7 @@ bool is_of_shape(const std::string& key) {
 
 /// Does a kind of the case have such a key? Rigid grains among bonded ones are disks without vertices.
 bool is_written(const Case& c, const Case& kind, const std::string& key) {
-  if (is_bonded(c) && is_rigid(kind) && (is_of_shape(key) || key == "mpm.cells")) return false;
+  if (has_bonded(c) && is_rigid(kind) && (is_of_shape(key) || key == "mpm.cells")) return false;
   if (key == "grain.surface") return kind.grain.shape == ShapeOfGrain::surface;
   if (key == "grain.outline") return kind.grain.shape == ShapeOfGrain::outline;
   if (key.starts_with(is_bonded(kind) ? "mpm." : "bpm.")) return false;
@@ -53,7 +54,8 @@ bool is_written(const Case& c, const Case& kind, const std::string& key) {
 template <class Visit>
 void for_each_value(const Case& c, int k, const Visit& visit) {
   const Case kind = case_of_kind(c, k);
-  if (is_rigid(kind)) visit("model", "\"rigid\"");
+  if (const GrainModel model = kind.experiment.model; is_rigid(kind) || model != c.experiment.model)
+    visit("model", fmt::format("\"{}\"", word_of(model)));
   for (const FormKey& form : written_keys()) {
     const std::string& key = form.keys.front();
     if (is_written(c, kind, key) && (c.sample.placed.empty() || !key.starts_with("sample.")))
@@ -76,7 +78,7 @@ std::string side_of(const Case& c, int kind) {
 }  // namespace
 
 bool is_key_of_kind(const Case& c, const std::string& name) {
-  if (name.starts_with(is_bonded(c) ? "mpm." : "bpm.")) return false;
+  if (!is_mixed(c) && name.starts_with(is_bonded(c) ? "mpm." : "bpm.")) return false;
   return std::ranges::any_of(written_keys(), [&](const FormKey& form) { return form.keys.front() == name; });
 }
 

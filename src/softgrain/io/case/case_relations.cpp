@@ -11,6 +11,7 @@
 #include "softgrain/experiment/bpm_step.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/experiment/lattice_case.hpp"
+#include "softgrain/experiment/mixed_case.hpp"
 #include "softgrain/experiment/solid_case.hpp"
 #include "softgrain/io/case/scope.hpp"
 #include "softgrain/io/case/shape_check.hpp"
@@ -263,6 +264,10 @@ const std::vector<Relation>& case_relations() {
       {{"experiment.loading"}, stages_and_path_differ},
       {{"experiment.model", "experiment.loading"}, kinds_cannot},
       {{"experiment.model", "experiment.loading"}, rigid_grain_alone},
+      {{"experiment.model", "experiment.dimension", "experiment.loading", "mpm.integrator", "mpm.formulation",
+        "box.x", "box.y", "contact.surface_energy", "contact.wall_surface_energy", "contact.restitution",
+        "contact.activation", "loading.hold_stress"},
+       mixed_cannot},
       {{"grain.shape", "grain.outline", "grain.surface", "grain.aspect", "grain.sides", "mpm.cells"},
        shape_cannot},
       {{"experiment.loading", "loading.confining_stress", "loading.max_stress", "loading.hold",

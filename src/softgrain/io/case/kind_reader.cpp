@@ -164,19 +164,16 @@ GrainModel FormReader::model_of_silent_kinds() const {
   return *model == GrainModel::rigid ? GrainModel::mpm : *model;
 }
 
-/// Rigid kinds mix with elastic ones, or as disks (spheres) with bonded ones; the case then is one of these.
+/// All models mix, rigid kinds as disks (spheres) where there are bonded ones; the case is elastic, else bonded,
+/// else rigid.
 void FormReader::settle_models() {
   Case& c = draft_.the_case;
   const auto first = [&](GrainModel model) { return std::ranges::find(c.kinds, model, &Case::Kind::model); };
   const auto has = [&](GrainModel model) { return first(model) != c.kinds.end(); };
   const auto at = [&](const auto& kind) { return kinds_[kind - c.kinds.begin()].at; };
-  if (has(GrainModel::bpm) && has(GrainModel::mpm))
-    draft_.add(at(first(GrainModel::bpm)),
-               "not yet: bonded grains among elastic ones come with a later version; today \"rigid\" mixes "
-               "with \"mpm\" or with \"bpm\": give each [[kind]] one of two such words as kind.model");
   if (has(GrainModel::bpm))
     for (auto kind = c.kinds.begin(); kind != c.kinds.end(); ++kind)
-      if (kind->grain.shape != ShapeOfGrain::disk)
+      if (kind->model != GrainModel::mpm && kind->grain.shape != ShapeOfGrain::disk)
         draft_.add(at(kind),
                    fmt::format("not yet: kind '{}': rigid grains among bonded ones come in other shapes with "
                                "a later version; today these are disks: leave kind.shape out",

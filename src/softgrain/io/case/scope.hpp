@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "softgrain/experiment/case.hpp"
+#include "softgrain/experiment/kinds.hpp"
 
 namespace softgrain {
 
@@ -15,7 +16,7 @@ struct Scope {
 
 namespace scope {
 
-inline bool is_bpm(const Case& c) { return is_bonded(c); }
+inline bool is_bpm(const Case& c) { return has_bonded(c); }
 inline bool is_mpm(const Case& c) { return is_elastic(c); }
 inline bool is_outlined(const Case& c) { return !is_bonded(c); }
 inline bool is_updated_lagrangian(const Case& c) {

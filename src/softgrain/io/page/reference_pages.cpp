@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "softgrain/experiment/create.hpp"
+#include "softgrain/experiment/kinds.hpp"
+#include "softgrain/experiment/sample.hpp"
 #include "softgrain/observe/columns.hpp"
 #include "softgrain/state/archive.hpp"
 
@@ -103,6 +105,28 @@ std::vector<FieldShape> fields_of(GrainModel model, Integrator integrator, Formu
   return lister.fields;
 }
 
+/// Of bonded grains among elastic ones, what is not an array of either: those of the bonded grains have a
+/// prefix.
+std::vector<FieldShape> fields_between_models() {
+  Case c;
+  c.output.report = false;
+  c.experiment = {.loading = LoadingPath::compaction, .model = GrainModel::mpm};
+  c.mpm.integrator = Integrator::symplectic_euler;
+  c.sample.packing_fraction = 0.3;
+  Case::Kind elastic = kind_of(c), bonded = elastic;
+  elastic.grains = bonded.grains = 1;
+  elastic.cells = 2;
+  bonded.model = GrainModel::bpm;
+  bonded.bpm.primaries = 20;
+  bonded.bpm.library = 1;
+  c.kinds = {elastic, bonded};
+  StateLister lister;
+  create_any_simulation(complete_sample(c))->visit(lister);
+  std::erase_if(lister.fields,
+                [](const FieldShape& shape) { return !shape.field.name.starts_with("primary_contact"); });
+  return lister.fields;
+}
+
 std::string table_of(const std::vector<FieldShape>& fields) {
   std::string text = "| array | rows | columns | unit | part | what |\n|---|---|---|---|---|---|\n";
   for (const auto& [field, columns, integers] : fields)
@@ -140,7 +164,10 @@ std::string checkpoint_page() {
   std::string text(checkpoint_begin);
   for (const auto& [heading, fields] : models)
     text += fmt::format("\n## {}\n\n{}", heading, table_of(fields));
-  return text;
+  return text + fmt::format(
+                    "\n## Bonded grains among elastic ones\n\nThe arrays of elastic grains, explicit; those of "
+                    "bonded grains, each with\n`bonded_` before its name; and\n\n{}",
+                    table_of(fields_between_models()));
 }
 
 }  // namespace softgrain

@@ -1,0 +1,49 @@
+#include "softgrain/experiment/mixed_case.hpp"
+
+#include <algorithm>
+
+#include "softgrain/experiment/kinds.hpp"
+#include "softgrain/experiment/stages_of_case.hpp"
+
+namespace softgrain {
+namespace {
+
+bool adheres(const Case& c) {
+  return c.contact.surface_energy > 0 || c.contact.wall_surface_energy > 0 ||
+         std::any_of(c.pairs.begin(), c.pairs.end(),
+                     [](const Case::Pair& pair) { return pair.surface_energy.value_or(0) > 0; });
+}
+
+bool keeps_a_stress(const Case& c) {
+  const std::vector<Stage> stages = stages_of(c);
+  return std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
+    return std::any_of(stage.drives.begin(), stage.drives.end(),
+                       [](const Drive& drive) { return drive.control == Control::stress; });
+  });
+}
+
+/// What is missing, and what to write today.
+std::string missing(const Case& c) {
+  if (is_in_space(c)) return "in space; today experiment.dimension = 2";
+  if (c.mpm.formulation != Formulation::total_lagrangian)
+    return "on a lattice; today mpm.formulation \"total_lagrangian\"";
+  if (c.mpm.integrator != Integrator::symplectic_euler)
+    return "with implicit steps; today mpm.integrator = \"explicit\"";
+  const auto repeats = repeats_of(c);
+  if (repeats[0] || repeats[1]) return "in a periodic cell; today box.x and box.y \"walls\"";
+  if (adheres(c)) return "that adhere; today all surface energies are 0";
+  if (c.contact.restitution > 0 || c.contact.activation != Activation::anticipated)
+    return "that rebound; today contact.restitution = 0 and contact.activation \"anticipated\"";
+  if (keeps_a_stress(c)) return "between walls that keep a stress; today walls move at a speed or a rate";
+  return "";
+}
+
+}  // namespace
+
+std::string mixed_cannot(const Case& c) {
+  if (!is_mixed(c) || !is_in_a_box(c)) return "";
+  const std::string text = missing(c);
+  return text.empty() ? "" : "not yet: bonded grains among elastic ones " + text;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,201 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "softgrain/bpm/aggregate.hpp"
+#include "softgrain/mixed/mixed_grains.hpp"
+#include "softgrain/soft/rigid_outline.hpp"
+#include "support/soft_grains.hpp"
+
+using namespace softgrain;
+
+namespace {
+
+constexpr double R = 1e-3, density = 1000, E = 1e6;
+constexpr int primaries = 30;
+
+/// A grain of bonded primaries about a place, or (1) a rigid disk.
+BondedGrainsSetup bonded_grain(int count, const Vec<2>& centre, std::vector<Wall<2>> walls = {}) {
+  AggregateOf<2> aggregate{.position = {{}}, .radius = {1}, .mean_distance = 2};
+  if (count > 1) aggregate = prepare_aggregate<2>({.primaries = count, .seed = 3});
+  std::vector<Vec<2>> position;
+  std::vector<double> radius, mass;
+  double filled = 0;
+  for (const double r : aggregate.radius) filled += r * r;
+  for (const Vec<2>& x : aggregate.position) position.push_back(centre + R * x);
+  for (const double r : aggregate.radius) {
+    radius.push_back(R * r);
+    mass.push_back(density * std::numbers::pi * R * R * r * r / filled);
+  }
+  const double a0 = R * aggregate.mean_distance;
+  BondedGrainsSetup setup{
+      .particles = rigid_particles<2>(std::move(position), std::move(radius), std::move(mass), std::move(walls)),
+      .grain_radius = {R},
+      .laws = {Attraction{}},
+      .kind = {0},
+      .friction = {.between = 0.3, .wall = 0.2},
+      .options = {.solver = {.min_sweeps = 20, .max_sweeps = 500, .tolerance = 1e-9, .extrapolated = true},
+                  .law = {}},
+      .skin = 0.2 * a0,
+      .density = density,
+      .sigma_I = 1e6};
+  setup.particles.grain.assign(setup.particles.position.size(), 0);
+  setup.laws[0].F0 = 1e6 * a0;
+  return setup;
+}
+
+AnyLaw law() { return make_law(MaterialLaw::neo_hookean, test::parameters(E, 0.4)); }
+
+const ExplicitOptions explicit_options{.damping_share = 0.5, .friction = 0.3, .wall_friction = 0.2};
+
+ExplicitDynamics elastic_disk(double radius, const Vec<2>& centre, const Vec<2>& velocity = {},
+                              std::vector<Wall<2>> walls = {}) {
+  return {SoftGrains({test::placed(test::disk(6), radius, centre, velocity, 0.1)}, law(), density),
+          Box<2>(std::move(walls)), explicit_options};
+}
+
+/// Bottom and top, which come together.
+std::vector<Wall<2>> closing_walls(double low, double high, double speed) {
+  return {{.point = {0, low}, .normal = {0, 1}, .velocity = {0, speed}},
+          {.point = {0, high}, .normal = {0, -1}, .velocity = {0, -speed}}};
+}
+
+MixedGrains mixed(ExplicitDynamics elastic, BondedGrainsSetup bonded) {
+  return MixedGrains({.elastic = std::move(elastic),
+                      .bonded = std::move(bonded),
+                      .elastic_number = {0},
+                      .bonded_number = {1},
+                      .kind = {0, 1},
+                      .kinds = 2});
+}
+
+double cross(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
+
+/// Of all grains.
+struct Momenta {
+  Vec<2> linear;
+  double angular = 0;
+
+  explicit Momenta(const MixedGrains& all) {
+    const SoftGrains& grains = all.elastic().dynamics().grains;
+    linear = grains.momentum();
+    const GrainBatch& batch = grains.batches[0];
+    for (int i = 0; i < batch.topology->grid.nodes(); ++i)
+      angular += grains.node_mass(batch, i)[0] *
+                 cross(lane_of(batch.position[i], 0), lane_of(batch.velocity[i], 0));
+    const RigidParticles<2>& p = all.bonded().dynamics().particles;
+    for (int i = 0; i < p.size(); ++i) {
+      linear += p.mass[i] * p.velocity[i];
+      angular += p.mass[i] * (p.radius[i] / p.inertia_ratio * p.spin[i][0] + cross(p.position[i], p.velocity[i]));
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a bonded grain that strikes an elastic one keeps both momenta, and the energy is accounted for") {
+  BondedGrainsSetup setup = bonded_grain(primaries, {0.4 * R, 2.05 * R});
+  for (int i = 0; i < primaries; ++i) setup.particles.velocity[i] = {0.5, -2};
+  MixedGrains grains = mixed(elastic_disk(R, {0, 0}, {0.1, 0.3}), std::move(setup));
+  const Momenta before(grains);
+  const double kinetic = grains.energies().kinetic;
+  Box<2> box;
+  bool met = false;
+  double sliding = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const StepReport report = grains.step(box, 0.4e-6);
+    REQUIRE(report.converged);
+    met = met || !grains.contacts().empty();
+    for (const Vec<2>& p : grains.primary_impulses()) sliding = std::max(sliding, std::abs(p[1]));
+  }
+  const Momenta after(grains);
+  const Energies energies = grains.energies();
+  REQUIRE(met);
+  CHECK(sliding > 0);
+  CHECK(grains.contacts().empty());  // they have parted
+  MESSAGE("momentum " << norm(after.linear - before.linear) / norm(before.linear) << ", angular "
+                      << (after.angular - before.angular) / before.angular << ", energy "
+                      << (energies.error + kinetic) / kinetic << ", left " << energies.kinetic / kinetic
+                      << ", contact " << energies.contact / kinetic << ", friction "
+                      << energies.friction / kinetic);
+  CHECK(norm(after.linear - before.linear) < 1e-12 * norm(before.linear));
+  CHECK(std::abs(after.angular - before.angular) < 1e-3 * std::abs(before.angular));
+  CHECK(std::abs(energies.error + kinetic) < 1e-3 * kinetic);  // its budget begins at rest
+  CHECK(energies.kinetic < 0.95 * kinetic);
+  CHECK(energies.friction > 0);
+  CHECK(energies.contact > energies.friction);
+}
+
+TEST_CASE("a bonded grain under the joint step bears what it bears in its own model") {
+  const double dt = 0.3e-6, speed = 0.2;
+  const int steps = 4000;
+  BondedGrainsSetup setup = bonded_grain(primaries, {});
+  double low = 0, high = 0;
+  for (int i = 0; i < primaries; ++i) {
+    low = std::min(low, setup.particles.position[i][1] - setup.particles.radius[i]);
+    high = std::max(high, setup.particles.position[i][1] + setup.particles.radius[i]);
+  }
+  const std::vector<Wall<2>> walls = closing_walls(low, high, speed);
+  setup = bonded_grain(primaries, {}, walls);
+  BondedGrains alone(setup);
+  MixedGrains grains = mixed(elastic_disk(0.4 * R, {10 * R, 0}, {}, walls), std::move(setup));
+  Box<2> box(walls), box_alone(walls);
+  double joint_force = 0, own_force = 0;
+  for (int k = 0; k < steps; ++k) {
+    grains.step(box, dt);
+    alone.step(box_alone, dt);
+    joint_force += box.impulse[1][1] / (steps * dt);
+    own_force += box_alone.impulse[1][1] / (steps * dt);
+  }
+  const Energies energies = grains.energies(), own = alone.energies();
+  MESSAGE("mean force " << joint_force << " N/m, alone " << own_force << "; work " << energies.wall_work << ", "
+                        << own.wall_work << "; missing " << energies.error / energies.wall_work << ", "
+                        << own.error / own.wall_work);
+  CHECK(own_force > 0);
+  CHECK(std::abs(joint_force / own_force - 1) < 0.05);
+  CHECK(std::abs(energies.error) < 1e-3 * energies.wall_work);
+}
+
+TEST_CASE("an elastic grain under the joint step bears what it bears in its own model") {
+  const double dt = 0.5e-6, speed = 0.5, half = 1.2 * R;
+  const std::vector<Wall<2>> walls = closing_walls(-half, half, speed);
+  ExplicitDynamics alone = elastic_disk(half, {}, {}, walls);
+  MixedGrains grains = mixed(elastic_disk(half, {}, {}, walls), bonded_grain(primaries, {10 * R, 0}, walls));
+  Box<2> box(walls);
+  double furthest = 0, largest = 0;
+  for (int k = 0; k < 600; ++k) {
+    grains.step(box, dt);
+    alone.step(dt);
+    furthest = std::max(furthest, norm(box.impulse[1] - alone.wall_impulse(1)));
+    largest = std::max(largest, norm(alone.wall_impulse(1)));
+  }
+  MESSAGE("largest difference of a force over the largest force " << furthest / largest);
+  CHECK(furthest < 1e-4 * largest);
+}
+
+TEST_CASE("a rigid disk presses an elastic one as it does as an outline of the elastic engine") {
+  const double dt = 0.5e-6, speed = 1;
+  const std::vector<Wall<2>> walls{{.point = {0, 0}, .normal = {0, 1}, .velocity = {}},
+                                   {.point = {0, 4 * R}, .normal = {0, -1}, .velocity = {0, -speed}}};
+  MixedGrains grains = mixed(elastic_disk(R, {0, R}, {}, walls), bonded_grain(1, {0, 3 * R}, walls));
+  const auto rigid = std::make_shared<const Topology>(rigid_disk(64));
+  GrainPlacement upper = test::placed(rigid, R, {0, 3 * R});
+  upper.kind = 1;
+  ExplicitDynamics outlines(SoftGrains({test::placed(test::disk(6), R, {0, R}, {}, 0.1), upper},
+                                       {{law(), density}, {.law = {}, .density = density, .rigid = true}}),
+                            Box<2>(walls), explicit_options);
+  Box<2> box(walls);
+  double force = 0, of_outlines = 0;
+  for (int k = 0; k < 600; ++k) {  // to 0.15 of the diameter
+    grains.step(box, dt);
+    outlines.step(dt);
+    if (k < 500) continue;
+    force -= box.impulse[0][1] / (100 * dt);
+    of_outlines -= outlines.wall_impulse(0)[1] / (100 * dt);
+  }
+  MESSAGE("force " << force << " N/m, between outlines " << of_outlines);
+  CHECK(of_outlines > 0);
+  CHECK(std::abs(force / of_outlines - 1) < 0.02);
+}
