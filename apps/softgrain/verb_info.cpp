@@ -57,7 +57,8 @@ std::string summary(const Case& c) {
   const bool one_bonded = is_bonded(c) && c.experiment.loading == LoadingPath::diametral;
   const double friction = one_bonded ? c.bpm.inner_friction : c.contact.friction;
   return fmt::format("{} of {}, {}{}, friction {}, seed {}", word_of(c.experiment.loading),
-                     is_mixed(c) ? "mpm and bpm" : word_of(c.experiment.model), grains, grain, friction, c.sample.seed);
+                     is_mixed(c) ? "mpm and bpm" : word_of(c.experiment.model), grains, grain, friction,
+                     c.sample.seed);
 }
 
 /// "strain 0.1  wall_height 9 mm ...", a few to a line.

@@ -121,9 +121,8 @@ inline std::vector<TinyCase> tiny_cases() {
     else if (name == "die" || name == "tablet")
       cases.push_back({name, source, tiny_path(name), 5});
     else if (name == "rubber_sand" || name == "soft_rigid" || name == "bonded_rigid" ||
-             name == "bonded_elastic" ||
-             name == "compaction_3d" || name == "sphere_walls" || name == "bonded_sphere" ||
-             name == "bonded_spheres" || name == "hydrogels")
+             name == "bonded_elastic" || name == "compaction_3d" || name == "sphere_walls" ||
+             name == "bonded_sphere" || name == "bonded_spheres" || name == "hydrogels")
       cases.push_back({name, source, tiny_path(name)});
     else if (name == "one_grain_box" || name == "diametral_plastic")
       cases.push_back({name, source, tiny_path(name), 3});

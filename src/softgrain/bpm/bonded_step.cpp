@@ -13,10 +13,8 @@ StepReport BondedGrainsOf<Dim>::step(Box<Dim>& box, double dt) {
   if (keeps_problem_) velocity_start_ = dynamics_.particles.velocity;
   dynamics_.options.solver.max_sweeps = solver_options().max_sweeps;
   double power_of_cell = 0;
-  StepReport report =
-      dynamics_.step([&](const RigidParticles<Dim>&,
-                         std::span<Vec<Dim>> force) { power_of_cell = add_forces(force); },
-                     dt);
+  StepReport report = dynamics_.step(
+      [&](const RigidParticles<Dim>&, std::span<Vec<Dim>> force) { power_of_cell = add_forces(force); }, dt);
   report.residual_limit = dynamics_.options.solver.worst_factor * dynamics_.options.solver.tolerance;
   impulse_time_ = dt;
   for (std::size_t w = 0; w < box.walls.size(); ++w) {

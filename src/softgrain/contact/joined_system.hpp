@@ -27,10 +27,8 @@ class JoinedSystem {
   Violation sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
                   const SolverOptions& options) {
     const auto split = static_cast<std::size_t>(split_);
-    Violation violation =
-        sweep_once<Dim>(first_, impulse.first(split), friction.first(split), options);
-    return violation +=
-           sweep_once<Dim>(second_, impulse.subspan(split), friction.subspan(split), options);
+    Violation violation = sweep_once<Dim>(first_, impulse.first(split), friction.first(split), options);
+    return violation += sweep_once<Dim>(second_, impulse.subspan(split), friction.subspan(split), options);
   }
   /// Each its own bodies.
   void extrapolate(double b) requires Extrapolates<First> && Extrapolates<Second> {

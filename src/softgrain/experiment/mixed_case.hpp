@@ -5,8 +5,8 @@
 
 namespace softgrain {
 
-/// Why a case of bonded grains among elastic ones cannot be carried out yet, for the user; "" where it can, and
-/// for other cases.
+/// Why a case of bonded grains among elastic ones cannot be carried out yet, for the user; "" where it can,
+/// and for other cases.
 std::string mixed_cannot(const Case& the_case);
 
 }  // namespace softgrain

@@ -56,8 +56,7 @@ void LoadingOf<Dim>::visit_stresses(StateVisitor& visit) {
   stresses("stress_mean_of_mean", "the same mean of that mean", stress_twice_);
   stresses("stress_largest", "so far", largest_);
   stresses("stress_at_stage", "that mean where the stage began", stress_at_stage_);
-  const auto press = [&](const char* name, std::string_view unit, std::string_view text,
-                         OfParts& values) {
+  const auto press = [&](const char* name, std::string_view unit, std::string_view text, OfParts& values) {
     visit_numbers(visit, {name, unit, Owner::run, Role::state, text}, values);
   };
   press("press_speed", "m/s", "of walls that keep a stress: yy, xx, bottom, top, left, right, xy",

@@ -31,7 +31,8 @@ StepReport MixedGrains::step(Box<2>& box, double dt) {
   const int of_outlines = report.contacts, touching = of_outlines + bonded_report_.contacts;
   if (touching > 0)
     report.overlap_mean =
-        (of_outlines * report.overlap_mean + bonded_report_.contacts * bonded_report_.overlap_mean) / touching;
+        (of_outlines * report.overlap_mean + bonded_report_.contacts * bonded_report_.overlap_mean) /
+        touching;
   report.overlap_max = std::max(report.overlap_max, bonded_report_.overlap_max);
   report.contacts = touching + pushing();
   const SolverOptions solver = bonded_.solver_options();
@@ -67,11 +68,12 @@ SolverReport MixedGrains::solve(const ContactsOfStep<2>& step) {
   JoinedSystem<2, RigidContactSystem<2>, PrimaryContactSystem> of_primaries(primaries, between);
   JoinedSystem<2, LumpedSystem<2>, decltype(of_primaries)> all(step.system, of_primaries);
   SolverOptions options = bonded_.solver_options();  // the tighter of both tolerances
-  options.velocity_scale = std::min(2 * mean_primary_ / dt, step.options.tolerance / options.tolerance *
-                                                                step.options.velocity_scale);
+  options.velocity_scale = std::min(2 * mean_primary_ / dt,
+                                    step.options.tolerance / options.tolerance * step.options.velocity_scale);
   const SolverReport report = solve_nlgs<2>(all, std::span(impulse), mu, options);
   auto solved = impulse.begin();
-  for (const std::span<Vec<2>> part : {step.impulse, std::span(bonded.contacts.impulse), std::span(impulse_)}) {
+  for (const std::span<Vec<2>> part :
+       {step.impulse, std::span(bonded.contacts.impulse), std::span(impulse_)}) {
     std::copy_n(solved, part.size(), part.begin());
     solved += static_cast<std::ptrdiff_t>(part.size());
   }
@@ -93,8 +95,8 @@ std::vector<double> MixedGrains::friction() const {
   const std::vector<int>& grain = bonded_.dynamics().particles.grain;
   std::vector<double> mu;
   for (const PrimaryContact& contact : contacts_)
-    mu.push_back(of_kinds.of(kind_[elastic_number_[contact.grain]],
-                             kind_[bonded_number_[grain[contact.primary]]]));
+    mu.push_back(
+        of_kinds.of(kind_[elastic_number_[contact.grain]], kind_[bonded_number_[grain[contact.primary]]]));
   return mu;
 }
 

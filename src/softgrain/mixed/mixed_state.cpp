@@ -35,7 +35,8 @@ void MixedGrains::visit(StateVisitor& visit) {
   visit.list({"primary_contact_bodies", "", Owner::contact, Role::start,
               "of primaries and outlines: primary, elastic grain, vertex or -1, four vertices of the curve"},
              bodies, bodies_of_contact);
-  visit.list({"primary_contact_places", "", Owner::contact, Role::start, "share, normal (2), gap [m]"}, places);
+  visit.list({"primary_contact_places", "", Owner::contact, Role::start, "share, normal (2), gap [m]"},
+             places);
   visit.list({"primary_contact_impulse", "N s/m", Owner::contact, Role::start, "(p_n, p_t)"}, impulse_);
   if (!visit.reads()) return;
   if (bodies.size() != bodies_of_contact * places.size() || places.size() != impulse_.size())

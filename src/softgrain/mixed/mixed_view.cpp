@@ -133,7 +133,8 @@ std::vector<ContactPoint> MixedGrains::contacts() const {
 Outlines MixedGrains::outlines() const {
   const Outlines a = elastic_.outlines(), b = bonded_.outlines();
   Outlines all{.vertex = {}, .begin = {0}, .area = a.area + b.area};
-  for (const std::vector<Vec<2>>& outline : in_order(parts_of(a.vertex, a.begin), parts_of(b.vertex, b.begin))) {
+  for (const std::vector<Vec<2>>& outline :
+       in_order(parts_of(a.vertex, a.begin), parts_of(b.vertex, b.begin))) {
     all.vertex.insert(all.vertex.end(), outline.begin(), outline.end());
     all.begin.push_back(static_cast<int>(all.vertex.size()));
   }
@@ -173,7 +174,8 @@ void MixedGrains::add_outlines(const std::vector<ContactPoint>& points, Scene& s
     if (grain < 0 || place[grain] < 0) return;
     const auto begin = static_cast<std::size_t>(of_bonded.begin[place[grain]]),
                count = static_cast<std::size_t>(of_bonded.begin[place[grain] + 1]) - begin;
-    give(force, x, std::span(of_bonded.vertex).subspan(begin, count), std::span(on_bonded).subspan(begin, count));
+    give(force, x, std::span(of_bonded.vertex).subspan(begin, count),
+         std::span(on_bonded).subspan(begin, count));
   };
   for (const ContactPoint& point : points) {
     give_to(point.a, -point.force, point.position);

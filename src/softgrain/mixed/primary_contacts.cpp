@@ -6,8 +6,7 @@ namespace softgrain {
 
 PrimaryContactSystem::PrimaryContactSystem(std::span<const PrimaryContact> contacts,
                                            const OutlineState& outline, std::span<Vec<2>> outline_velocity,
-                                           std::span<const double> inverse_mass,
-                                           RigidParticles<2>& primaries)
+                                           std::span<const double> inverse_mass, RigidParticles<2>& primaries)
     : velocity_(outline_velocity), primaries_(primaries) {
   rows_.reserve(contacts.size());
   for (const PrimaryContact& contact : contacts) {

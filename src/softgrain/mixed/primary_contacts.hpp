@@ -11,19 +11,19 @@
 
 namespace softgrain {
 
-/// A primary of a bonded grain at the outline of an elastic one. The outline's vertices meet the disk, and the
-/// disk's centre meets the smooth curve through them, so that neither sinks between the other's.
+/// A primary of a bonded grain at the outline of an elastic one. The outline's vertices meet the disk, and
+/// the disk's centre meets the smooth curve through them, so that neither sinks between the other's.
 ///
 /// As between outlines the gap is that at the end of a flight without forces; place and normal are those
 /// half-way (OutlineContact).
 struct PrimaryContact {
   int primary = 0;
-  int grain = 0;                 ///< the elastic one, by its number among these
-  int vertex = -1;               ///< of the outline; or -1: the curve meets the primary
-  std::array<int, 4> span{};     ///< with c(xi) of these vertices (curve_weights)
-  double share = 0;              ///< xi
-  Vec<2> normal{};               ///< unit, from the primary to the outline
-  double gap = 0;                ///< |x - x_c| - r [m], open > 0
+  int grain = 0;              ///< the elastic one, by its number among these
+  int vertex = -1;            ///< of the outline; or -1: the curve meets the primary
+  std::array<int, 4> span{};  ///< with c(xi) of these vertices (curve_weights)
+  double share = 0;           ///< xi
+  Vec<2> normal{};            ///< unit, from the primary to the outline
+  double gap = 0;             ///< |x - x_c| - r [m], open > 0
 
   /// The contacts of a step differ in it, and are sorted by it.
   auto key() const { return std::tuple(primary, grain, vertex); }

@@ -22,9 +22,9 @@ namespace softgrain {
 /// The contacts of a sub-step when they are to be solved.
 template <int Dim>
 struct ContactsOfStep {
-  const OutlineStateOf<Dim>& outline;       ///< position: where the outlines would be without forces
-  std::span<ScatteredVec<Dim>> velocity;    ///< (outline vertices) under forces and the impulses so far [m/s]
-  std::span<const double> inverse_mass;     ///< (outline vertices) [m/kg]
+  const OutlineStateOf<Dim>& outline;     ///< position: where the outlines would be without forces
+  std::span<ScatteredVec<Dim>> velocity;  ///< (outline vertices) under forces and the impulses so far [m/s]
+  std::span<const double> inverse_mass;   ///< (outline vertices) [m/kg]
   LumpedSystem<Dim>& system;
   std::span<Vec<Dim>> impulse;  ///< have acted; the solution
   std::span<const double> friction;

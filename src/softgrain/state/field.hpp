@@ -92,8 +92,8 @@ class StateVisitor {
   }
 };
 
-/// Sees the arrays of a part of a state, for the visitor of the whole: "position" with the prefix "bonded_" is
-/// "bonded_position" there.
+/// Sees the arrays of a part of a state, for the visitor of the whole: "position" with the prefix "bonded_"
+/// is "bonded_position" there.
 class PartVisitor final : public StateVisitor {
  public:
   /// Keeps a reference.

@@ -164,8 +164,8 @@ GrainModel FormReader::model_of_silent_kinds() const {
   return *model == GrainModel::rigid ? GrainModel::mpm : *model;
 }
 
-/// All models mix, rigid kinds as disks (spheres) where there are bonded ones; the case is elastic, else bonded,
-/// else rigid.
+/// All models mix, rigid kinds as disks (spheres) where there are bonded ones; the case is elastic, else
+/// bonded, else rigid.
 void FormReader::settle_models() {
   Case& c = draft_.the_case;
   const auto first = [&](GrainModel model) { return std::ranges::find(c.kinds, model, &Case::Kind::model); };

@@ -164,10 +164,11 @@ std::string checkpoint_page() {
   std::string text(checkpoint_begin);
   for (const auto& [heading, fields] : models)
     text += fmt::format("\n## {}\n\n{}", heading, table_of(fields));
-  return text + fmt::format(
-                    "\n## Bonded grains among elastic ones\n\nThe arrays of elastic grains, explicit; those of "
-                    "bonded grains, each with\n`bonded_` before its name; and\n\n{}",
-                    table_of(fields_between_models()));
+  return text +
+         fmt::format(
+             "\n## Bonded grains among elastic ones\n\nThe arrays of elastic grains, explicit; those of "
+             "bonded grains, each with\n`bonded_` before its name; and\n\n{}",
+             table_of(fields_between_models()));
 }
 
 }  // namespace softgrain
