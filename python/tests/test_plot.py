@@ -1,6 +1,7 @@
 """The figures: what they show, how large they are, and that they depend on nothing but the run."""
 
 import contextlib
+import dataclasses
 import io
 import os
 import subprocess
@@ -420,6 +421,20 @@ class Cells(unittest.TestCase):
         surface = picture.surface(self.snapshot(), np.tile([-1.0, 1.0, 3.0, 5.0], 8))  # a checkerboard in each cell
         self.assertEqual(surface.values.tolist(), [2.0] * 8)
         self.assertEqual((len(surface.polygons), len(surface.rims)), (8, 2))
+
+    def test_primaries_among_cells_are_round_polygons_with_values_of_their_own(self):
+        snapshot = self.snapshot()
+        points = len(snapshot.particles["radius"])
+        more = {"position": [[9.0, 1.0], [9.0, 3.0]], "radius": [0.5, 0.25], "grain": [7, 7], "J": [1, 1]}
+        particles = {name: np.concatenate([values, np.asarray(more[name], values.dtype)]) for name, values in snapshot.particles.items()
+                     if name in more}
+        particles["primary"] = np.repeat([0, 1], [points, 2])
+        mixed = dataclasses.replace(snapshot, particles=particles)
+        surface = picture.surface(mixed, np.arange(points + 2.0))
+        self.assertEqual(len(surface.polygons), points // 4 + 2)
+        np.testing.assert_allclose(surface.values[-2:], [points, points + 1])
+        np.testing.assert_allclose(np.hypot(*(np.asarray(surface.polygons[-1]) - [9, 3]).T), 0.25)
+        np.testing.assert_allclose(surface.values[:2], [1.5, 5.5])
 
     def test_points_that_are_not_four_by_four_in_cells_are_disks_within_outlines(self):
         mixed = self.snapshot(grain=np.tile([0, 1], 16))

@@ -217,3 +217,32 @@ TEST_CASE("a rigid disk presses an elastic one as it does as an outline of the e
   CHECK(of_outlines > 0);
   CHECK(std::abs(force / of_outlines - 1) < 0.01);
 }
+
+TEST_CASE("a press lies on an elastic and on a bonded grain with the force that it keeps") {
+  const double dt = 0.3e-6, F = 0.1 * E * R;
+  Box<2> box({{.point = {0, 0}, .normal = {0, 1}, .velocity = {}},
+              {.point = {0, 2.1 * R}, .normal = {0, -1}, .velocity = {}}});
+  box.presses = {{.share = {0, 1}, .force = F, .most = 1}};
+  const PressBody body = critically_damped(density, std::sqrt(10 * E / density), 2 * R, dt);
+  box.presses[0].mass = body.mass * 2 * R;
+  box.presses[0].damper = body.damper * 2 * R;
+  MixedGrains grains =
+      mixed(elastic_disk(R, {0, R}, {}, box.walls), bonded_grain(primaries, {3 * R, R}, box.walls));
+  double top = 0, bottom = 0;
+  const int steps = 8000, last = 2000;
+  for (int k = 0; k < steps; ++k) {
+    grains.step(box, dt);
+    if (k < steps - last) continue;
+    top += box.outward_impulse(1) / (last * dt);
+    bottom += box.outward_impulse(0) / (last * dt);
+  }
+  CHECK(std::abs(top / F - 1) < 0.01);
+  CHECK(std::abs(bottom / F - 1) < 0.01);
+  double on_bonded = 0, on_elastic = 0;
+  for (const ContactPoint& point : grains.contacts())
+    if (point.b == wall_index(1)) (point.a == 1 ? on_bonded : on_elastic) += dot(point.force, point.normal);
+  CHECK(on_bonded > 0.05 * F);
+  CHECK(on_elastic > 0.05 * F);
+  const Energies energies = grains.energies();
+  CHECK(std::abs(energies.error) < 1e-3 * energies.wall_work);
+}

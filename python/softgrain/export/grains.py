@@ -1,4 +1,4 @@
-"""Grains as a table: shape, contacts and stress of each. Of elastic and rigid grains, disks and spheres."""
+"""Grains as a table: shape, contacts and stress of each. Of elastic and rigid grains, disks and spheres, and of mixtures with bonded ones."""
 
 import numpy as np
 
@@ -26,7 +26,8 @@ def grain_table(snapshot: Snapshot) -> dict[str, np.ndarray]:
     love_weber_xx ...  the same from whole contacts, -1/V sum of (x_c - x_g) f_c [Pa]
 
     Volume times love_weber, over the volume of the box, adds up to the columns stress_xx ... of the run, less what the motion
-    has in them. Raises NotRecorded where there are no outlines with forces: bonded grains have none."""
+    has in them. Bonded grains have outlines with forces only among elastic ones; the force of a contact then is where the outline is
+    nearest to it, so that stress is as good as the outline. Raises NotRecorded where there are none."""
     if "force" not in snapshot.outlines or not snapshot.contacts_of_grains:
         raise NotRecorded(f"the snapshot of step {snapshot.step} has no outlines with forces: those are of elastic and rigid grains")
     centre, owner = snapshot.bodies(), snapshot.outlines["grain"].astype(int)

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "softgrain/experiment/kinds.hpp"
-#include "softgrain/experiment/stages_of_case.hpp"
 
 namespace softgrain {
 namespace {
@@ -12,14 +11,6 @@ bool adheres(const Case& c) {
   return c.contact.surface_energy > 0 || c.contact.wall_surface_energy > 0 ||
          std::any_of(c.pairs.begin(), c.pairs.end(),
                      [](const Case::Pair& pair) { return pair.surface_energy.value_or(0) > 0; });
-}
-
-bool keeps_a_stress(const Case& c) {
-  const std::vector<Stage> stages = stages_of(c);
-  return std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
-    return std::any_of(stage.drives.begin(), stage.drives.end(),
-                       [](const Drive& drive) { return drive.control == Control::stress; });
-  });
 }
 
 /// What is missing, and what to write today.
@@ -34,7 +25,6 @@ std::string missing(const Case& c) {
   if (adheres(c)) return "that adhere; today all surface energies are 0";
   if (c.contact.restitution > 0 || c.contact.activation != Activation::anticipated)
     return "that rebound; today contact.restitution = 0 and contact.activation \"anticipated\"";
-  if (keeps_a_stress(c)) return "between walls that keep a stress; today walls move at a speed or a rate";
   return "";
 }
 

@@ -9,6 +9,28 @@
 #include "softgrain/core/error.hpp"
 
 namespace softgrain {
+namespace {
+
+/// Contacts of primaries, whose sweeps move the presses that others push, too.
+struct PressedPrimaries {
+  RigidContactSystem<2>& system;
+  PushedBodies& own;  ///< that the system sweeps
+  PushedBodies& all;  ///< of which all have the bodies
+
+  int size() const { return system.size(); }
+  Mat<2> delassus_block(int contact) const { return system.delassus_block(contact); }
+  Vec<2> relative_velocity(int contact) const { return system.relative_velocity(contact); }
+  void apply_impulse(int contact, const Vec<2>& dp) { system.apply_impulse(contact, dp); }
+  void extrapolate(double b) { system.extrapolate(b); }
+  Violation sweep(std::span<Vec<2>> impulse, std::span<const double> friction, const SolverOptions& options) {
+    own.bodies = all.bodies;
+    const Violation violation = system.sweep(impulse, friction, options);
+    all.bodies = own.bodies;
+    return violation;
+  }
+};
+
+}  // namespace
 
 MixedGrains::MixedGrains(MixedGrainsSetup setup)
     : elastic_(std::move(setup.elastic)),
@@ -23,7 +45,6 @@ MixedGrains::MixedGrains(MixedGrainsSetup setup)
 }
 
 StepReport MixedGrains::step(Box<2>& box, double dt) {
-  require(box.presses.empty(), "not yet: walls that keep a stress about bonded grains among elastic ones");
   require(!box.cell.any(), "not yet: a periodic cell of bonded grains among elastic ones");
   bonded_.take_walls(box);
   StepReport report =
@@ -52,8 +73,14 @@ SolverReport MixedGrains::solve(const ContactsOfStep<2>& step) {
   if (elastic.impulse_time > 0 && elastic.impulse_time != dt)  // the same force
     for (Vec<2>& p : impulse_) p *= dt / elastic.impulse_time;
 
-  PrimaryContactSystem between(contacts_, step.outline, step.velocity, step.inverse_mass, bonded.particles);
+  PrimaryContactSystem between(contacts_, step.outline, step.velocity, step.inverse_mass, bonded.particles,
+                               bonded.options.law.push_out);
+  bonded.particles.presses = elastic.box.presses;
   RigidContactSystem<2> primaries = bonded_.begin_joint_step(dt);
+  PushedBodies pressed = bonded.pressed_walls(dt);
+  for (std::size_t k = 0; k < pressed.bodies.size(); ++k)
+    step.pressed.bodies[k].push += pressed.bodies[k].push;
+  primaries.push(pressed);
   primaries.apply_impulses(bonded.contacts.impulse);
   between.apply_impulses(impulse_);
 
@@ -65,7 +92,8 @@ SolverReport MixedGrains::solve(const ContactsOfStep<2>& step) {
   };
   append(bonded.contacts.impulse, bonded.contacts.friction);
   append(impulse_, friction());
-  JoinedSystem<2, RigidContactSystem<2>, PrimaryContactSystem> of_primaries(primaries, between);
+  PressedPrimaries pressed_primaries{primaries, pressed, step.pressed};
+  JoinedSystem<2, PressedPrimaries, PrimaryContactSystem> of_primaries(pressed_primaries, between);
   JoinedSystem<2, LumpedSystem<2>, decltype(of_primaries)> all(step.system, of_primaries);
   SolverOptions options = bonded_.solver_options();  // the tighter of both tolerances
   options.velocity_scale = std::min(2 * mean_primary_ / dt,
@@ -76,6 +104,13 @@ SolverReport MixedGrains::solve(const ContactsOfStep<2>& step) {
        {step.impulse, std::span(bonded.contacts.impulse), std::span(impulse_)}) {
     std::copy_n(solved, part.size(), part.begin());
     solved += static_cast<std::ptrdiff_t>(part.size());
+  }
+
+  elastic.other_push.clear();
+  const PushedBodies by_primaries = bonded.pressed_walls(dt);
+  for (std::size_t k = 0; k < step.pressed.bodies.size(); ++k) {
+    elastic.other_push.push_back(by_primaries.bodies[k].push);
+    set_press_speed(bonded.particles, elastic.box.presses[k], step.pressed.bodies[k].velocity());
   }
 
   const PrimaryWork work = between.work(impulse_);
@@ -159,6 +194,12 @@ Numbers MixedGrains::numbers(const Box<2>& box, const Energies&) const {
 std::pair<double, double> MixedGrains::extent(int axis) const {
   const auto a = elastic_.extent(axis), b = bonded_.extent(axis);
   return {std::min(a.first, b.first), std::max(a.second, b.second)};
+}
+
+/// That which damps more: of the stiffer grains.
+PressBody MixedGrains::press_body(const Box<2>& box, int axis, double dt) const {
+  const PressBody a = elastic_.press_body(box, axis, dt), b = bonded_.press_body(box, axis, dt);
+  return a.damper > b.damper ? a : b;
 }
 
 std::pair<double, double> MixedGrains::reach() const {

@@ -24,14 +24,13 @@ struct MixedGrainsSetup {
 
 /// Bonded grains among elastic ones in the plane, by symplectic Euler, under one contact solve: contacts of
 /// outlines and walls, of primaries and walls, and of primaries and outlines (docs/decisions/0080). The
-/// elastic engine leads: its sub-steps are those of all. Walls have velocities; none is a press, and no cell
-/// repeats.
+/// elastic engine leads: its sub-steps are those of all, and it moves presses. No cell repeats.
 class MixedGrains final : public Model {
  public:
   explicit MixedGrains(MixedGrainsSetup setup);
 
   std::unique_ptr<Model> copy() const override { return std::make_unique<MixedGrains>(*this); }
-  /// Raises UsageError for presses and for a cell.
+  /// Raises UsageError for a cell.
   StepReport step(Box<2>& box, double dt) override;
   bool is_exhausted(const StepReport& report, const Box<2>& box) const override;
   std::string exhaustion(const Box<2>& box) const override { return bonded_.exhaustion(box); }
@@ -53,6 +52,8 @@ class MixedGrains final : public Model {
   Scene scene(const Box<2>& box) const override;
   std::pair<double, double> reach() const override;
   std::vector<GrainView> grains() const override { return in_order(elastic_.grains(), bonded_.grains()); }
+
+  PressBody press_body(const Box<2>& box, int axis, double dt) const override;
 
   const ElasticGrains<ExplicitDynamics>& elastic() const { return elastic_; }
   const BondedGrains& bonded() const { return bonded_; }

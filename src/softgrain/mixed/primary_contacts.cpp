@@ -6,7 +6,8 @@ namespace softgrain {
 
 PrimaryContactSystem::PrimaryContactSystem(std::span<const PrimaryContact> contacts,
                                            const OutlineState& outline, std::span<Vec<2>> outline_velocity,
-                                           std::span<const double> inverse_mass, RigidParticles<2>& primaries)
+                                           std::span<const double> inverse_mass, RigidParticles<2>& primaries,
+                                           double push_out)
     : velocity_(outline_velocity), primaries_(primaries) {
   rows_.reserve(contacts.size());
   for (const PrimaryContact& contact : contacts) {
@@ -25,7 +26,8 @@ PrimaryContactSystem::PrimaryContactSystem(std::span<const PrimaryContact> conta
     const double of_primary = primaries.inverse_mass[contact.primary];
     row.delassus = {mobility + of_primary, mobility + (1 + primaries.inertia_ratio) * of_primary};
     row.primary_start = primary_velocity(row);
-    row.offset = contact.gap / outline.dt - dot(row.normal, row.outline_start - row.primary_start);
+    const double now = contact.gap / outline.dt - dot(row.normal, row.outline_start - row.primary_start);
+    row.offset = now > 0 ? now : push_out * now;
     rows_.push_back(row);
   }
 }

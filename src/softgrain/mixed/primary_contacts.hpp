@@ -50,16 +50,19 @@ struct PrimaryWork {
 /// Contacts of primaries and outlines as a ContactSystem. At x_c + r n a primary with s = r omega moves by
 /// v + s t:
 ///   u = sum_k w_k v_k - v - s t,  W = diag(M + 1/m, M + (1 + kappa)/m),  M = sum_k w_k^2/m_k,
-/// kappa = m r^2/I, with u_n changed to the gap at the end of the step over dt,
-///   (g + dt n . (u - u_found))/dt.
+/// kappa = m r^2/I. u_n has the offset of anticipated contacts (signorini_offset),
+///   max(g, 0)/dt + beta min(g, 0)/dt,  g = g_end - dt n . u_found,
+/// g_end the gap of the flight with the velocities u_found. In the short steps of primaries, all of an
+/// overlap at once would make energy of what the sweeps leave (docs/decisions/0080).
 class PrimaryContactSystem {
  public:
   /// At the velocities u_found with which the contacts were found. outline_velocity: (outline vertices)
   /// [m/s], those of now; of the start they are what brings outline.start to outline.position in dt.
-  /// inverse_mass: (outline vertices) [m/kg]. Keeps references to the velocities and to the primaries.
+  /// inverse_mass: (outline vertices) [m/kg]. push_out: beta. Keeps references to the velocities and to the
+  /// primaries.
   PrimaryContactSystem(std::span<const PrimaryContact> contacts, const OutlineState& outline,
                        std::span<Vec<2>> outline_velocity, std::span<const double> inverse_mass,
-                       RigidParticles<2>& primaries);
+                       RigidParticles<2>& primaries, double push_out = 1);
 
   int size() const { return static_cast<int>(rows_.size()); }
   Mat<2> delassus_block(int contact) const { return Mat<2>::diagonal(rows_[contact].delassus); }

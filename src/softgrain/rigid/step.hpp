@@ -69,6 +69,8 @@ class RigidDynamics {
   /// The contacts with gaps and frames at the present positions, to be solved in full precision; their
   /// impulses have not acted. Keeps references.
   RigidContactSystem<Dim> contact_system(double dt);
+  /// The presses under the impulses that their contacts carry now.
+  PushedBodies pressed_walls(double dt) const;
   /// x + (dt - lead) v+, work and overlaps. Raises NumericalError as step.
   StepReport end_step(const SolverReport& solver, double dt, double lead);
 
@@ -105,7 +107,6 @@ class RigidDynamics {
   void list_pressed_walls();
   void list_between_again();
   double pull_on(const Press& press) const;
-  PushedBodies pressed_walls(double dt) const;
   void move_presses(double dt);
   void end_step_of_presses(double dt);
   SolverReport solve(double dt);

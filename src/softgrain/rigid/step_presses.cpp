@@ -15,7 +15,6 @@ double RigidDynamics<Dim>::pull_on(const Press& press) const {
   return pull;
 }
 
-/// The presses under the impulses that their contacts carry now.
 template <int Dim>
 PushedBodies RigidDynamics<Dim>::pressed_walls(double dt) const {
   PushedBodies pushed;

@@ -76,7 +76,7 @@ SolverReport ExplicitStep<Dim>::kick_and_solve(double dt, const JointSolve<Dim>&
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
   const SolverReport solved =
-      joint ? joint({outline_, outline_velocity_, inverse_mass_, system, impulse, friction, solver})
+      joint ? joint({outline_, outline_velocity_, inverse_mass_, system, pressed, impulse, friction, solver})
             : solve_adhesive<Dim>(system, adhesive, pressed, std::span(impulse), friction, solver);
   system.gather(impulse);
   impulse_time = dt;
@@ -136,7 +136,7 @@ void ExplicitStep<Dim>::add_contact_work(double dt) {
             0.5 * (box.walls[w].velocity + (press.share[w] * press.speed) * box.walls[w].normal);
   softgrain::add_contact_work<Dim>(contacts, felt(), outline_, work, box.impulse);
   outline_.walls = box.walls;
-  end_step_of_presses(box, contacts, felt(), dt);
+  end_step_of_presses(box, contacts, felt(), dt, other_push);
 }
 
 /// (p_n - a, p_t) of the contacts [N s/m in the plane]; until it is called again.

@@ -26,6 +26,7 @@ struct ContactsOfStep {
   std::span<ScatteredVec<Dim>> velocity;  ///< (outline vertices) under forces and the impulses so far [m/s]
   std::span<const double> inverse_mass;   ///< (outline vertices) [m/kg]
   LumpedSystem<Dim>& system;
+  PushedBodies& pressed;        ///< walls of presses, which sweeps of the system move
   std::span<Vec<Dim>> impulse;  ///< have acted; the solution
   std::span<const double> friction;
   SolverOptions options;
@@ -99,6 +100,7 @@ class ExplicitStep {
   WorkBudget work;                 ///< since the start; there is no `inertia`
   FlowOfGrains last_flow;          ///< of the last sub-step
   std::vector<char> met;           ///< (grains) 1: bodies of another model are near; empty: none is
+  std::vector<double> other_push;  ///< (presses) of these bodies in the sub-step [N s/m]; empty: none
   StableStep stable;
 
  private:

@@ -44,17 +44,19 @@ double move_presses(Box<Dim>& box, const PushedBodies& solved, double dt) {
 }
 
 template <int Dim>
-void end_step_of_presses(Box<Dim>& box, Contacts<Dim> contacts, Impulses<Dim> impulse, double dt) {
+void end_step_of_presses(Box<Dim>& box, Contacts<Dim> contacts, Impulses<Dim> impulse, double dt,
+                         std::span<const double> more) {
   const PushedBodies pushed = pressed_walls(box, contacts, impulse, dt);
   for (std::size_t k = 0; k < box.presses.size(); ++k)
-    box.presses[k].end_step(box.speed_of(box.presses[k]), pushed.bodies[k].push, dt);
+    box.presses[k].end_step(box.speed_of(box.presses[k]),
+                            more.empty() ? pushed.bodies[k].push : pushed.bodies[k].push + more[k], dt);
 }
 
 template PushedBodies pressed_walls(const Box<2>&, Contacts<2>, Impulses<2>, double);
 template double move_presses(Box<2>&, const PushedBodies&, double);
-template void end_step_of_presses(Box<2>&, Contacts<2>, Impulses<2>, double);
+template void end_step_of_presses(Box<2>&, Contacts<2>, Impulses<2>, double, std::span<const double>);
 template PushedBodies pressed_walls(const Box<3>&, Contacts<3>, Impulses<3>, double);
 template double move_presses(Box<3>&, const PushedBodies&, double);
-template void end_step_of_presses(Box<3>&, Contacts<3>, Impulses<3>, double);
+template void end_step_of_presses(Box<3>&, Contacts<3>, Impulses<3>, double, std::span<const double>);
 
 }  // namespace softgrain

@@ -17,8 +17,9 @@ PushedBodies pressed_walls(const Box<Dim>& box, Contacts<Dim> contacts, Impulses
 template <int Dim>
 double move_presses(Box<Dim>& box, const PushedBodies& solved, double dt);
 
-/// A step of dt [s] is over.
+/// A step of dt [s] is over. more: (presses) pushes of other bodies [N s/m]; empty: none.
 template <int Dim>
-void end_step_of_presses(Box<Dim>& box, Contacts<Dim> contacts, Impulses<Dim> impulse, double dt);
+void end_step_of_presses(Box<Dim>& box, Contacts<Dim> contacts, Impulses<Dim> impulse, double dt,
+                         std::span<const double> more = {});
 
 }  // namespace softgrain

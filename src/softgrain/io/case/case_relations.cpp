@@ -266,7 +266,7 @@ const std::vector<Relation>& case_relations() {
       {{"experiment.model", "experiment.loading"}, rigid_grain_alone},
       {{"experiment.model", "experiment.dimension", "experiment.loading", "mpm.integrator", "mpm.formulation",
         "box.x", "box.y", "contact.surface_energy", "contact.wall_surface_energy", "contact.restitution",
-        "contact.activation", "loading.hold_stress"},
+        "contact.activation"},
        mixed_cannot},
       {{"grain.shape", "grain.outline", "grain.surface", "grain.aspect", "grain.sides", "mpm.cells"},
        shape_cannot},

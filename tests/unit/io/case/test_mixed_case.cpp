@@ -102,5 +102,4 @@ TEST_CASE("what bonded grains among elastic ones cannot do yet is refused with w
   refused({"box.x=periodic"}, "in a periodic cell");
   refused({"contact.surface_energy=0.1"}, "that adhere");
   refused({"contact.activation=closed_at_mid_step"}, "that rebound");
-  refused({"loading.hold_stress=1e5", "loading.hold=1e-3"}, "between walls that keep a stress");
 }
