@@ -50,6 +50,7 @@ BpmSample grains_of_sample(const BpmSample& all, const std::vector<int>& number)
   some.begin.push_back(static_cast<int>(position.size()));
   some.particles =
       rigid_particles<2>(std::move(position), std::move(radius), std::move(mass), all.particles.walls);
+  some.particles.cell = all.particles.cell;
   some.particles.grain = std::move(grain_of);
   return some;
 }

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "softgrain/contact/joined_system.hpp"
-#include "softgrain/core/error.hpp"
 
 namespace softgrain {
 namespace {
@@ -45,7 +44,6 @@ MixedGrains::MixedGrains(MixedGrainsSetup setup)
 }
 
 StepReport MixedGrains::step(Box<2>& box, double dt) {
-  require(!box.cell.any(), "not yet: a periodic cell of bonded grains among elastic ones");
   bonded_.take_walls(box);
   StepReport report =
       elastic_.joint_step(box, dt, [&](const ContactsOfStep<2>& contacts) { return solve(contacts); });
@@ -114,7 +112,8 @@ SolverReport MixedGrains::solve(const ContactsOfStep<2>& step) {
   }
 
   const PrimaryWork work = between.work(impulse_);
-  elastic.work.contacts -= work.on_outlines;
+  elastic.work.contacts += work.by_cell - work.on_outlines;
+  elastic.work.walls += work.by_cell;
   bonded_report_ =
       bonded_.end_joint_step(report, dt, {.contact = -work.on_primaries, .friction = work.friction});
   for (std::size_t w = 0; w < elastic.box.walls.size(); ++w)
@@ -148,6 +147,11 @@ void MixedGrains::tell_who_is_met() {
 
 bool MixedGrains::is_exhausted(const StepReport&, const Box<2>& box) const {
   return bonded_.is_exhausted(bonded_report_, box);
+}
+
+void MixedGrains::follow(const Mat<2>& L) {
+  elastic_.follow(L);
+  bonded_.follow(L);
 }
 
 void MixedGrains::set(const Settings& settings) {

@@ -24,16 +24,16 @@ struct MixedGrainsSetup {
 
 /// Bonded grains among elastic ones in the plane, by symplectic Euler, under one contact solve: contacts of
 /// outlines and walls, of primaries and walls, and of primaries and outlines (docs/decisions/0080). The
-/// elastic engine leads: its sub-steps are those of all, and it moves presses. No cell repeats.
+/// elastic engine leads: its sub-steps are those of all, and it moves presses.
 class MixedGrains final : public Model {
  public:
   explicit MixedGrains(MixedGrainsSetup setup);
 
   std::unique_ptr<Model> copy() const override { return std::make_unique<MixedGrains>(*this); }
-  /// Raises UsageError for a cell.
   StepReport step(Box<2>& box, double dt) override;
   bool is_exhausted(const StepReport& report, const Box<2>& box) const override;
   std::string exhaustion(const Box<2>& box) const override { return bonded_.exhaustion(box); }
+  void follow(const Mat<2>& L) override;
   void visit(StateVisitor& visit) override;
   void go_on(const Box<2>& box) override;
   Settings settings() const override { return elastic_.settings().then(bonded_.settings()); }
@@ -67,6 +67,7 @@ class MixedGrains final : public Model {
   int pushing() const;  // of primary_contacts
   void tell_who_is_met();
   std::vector<BranchForce> forces_on_primaries() const;
+  int spans_pushing(std::size_t contact) const;
   std::vector<ContactPoint> between_models() const;
   void add_outlines(const std::vector<ContactPoint>& points, Scene& scene) const;
 

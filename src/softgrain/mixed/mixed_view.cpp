@@ -83,6 +83,19 @@ Bodies MixedGrains::bodies() const {
   return all;
 }
 
+/// How many spans of the same outline push on the primary of contact c, which is one of them.
+int MixedGrains::spans_pushing(std::size_t c) const {
+  const auto same = [&](const PrimaryContact& other) {
+    return other.primary == contacts_[c].primary && other.grain == contacts_[c].grain;
+  };
+  std::size_t first = c;
+  while (first > 0 && same(contacts_[first - 1])) --first;
+  int count = 0;
+  for (std::size_t k = first; k < contacts_.size() && same(contacts_[k]); ++k)
+    count += contacts_[k].vertex < 0 && impulse_[k][0] > 0 ? 1 : 0;
+  return std::max(count, 1);
+}
+
 /// From the bonded grain to the elastic one. Each side that brings places takes half of what its places stand
 /// for: a vertex half of the segments beside it, a primary its diameter. A rigid grain brings none.
 std::vector<ContactPoint> MixedGrains::between_models() const {
@@ -98,7 +111,7 @@ std::vector<ContactPoint> MixedGrains::between_models() const {
     const int grain = primaries.grain[contact.primary];
     const bool is_rigid = ranges[grain].end - ranges[grain].begin == 1;
     const double r = primaries.radius[contact.primary];
-    double length = is_rigid ? 0 : r;
+    double length = is_rigid ? 0 : r / spans_pushing(c);
     if (contact.vertex >= 0) {
       const auto [before, after] = grains.beside(contact.vertex);
       const Vec<2>& here = x[contact.vertex];
@@ -109,7 +122,8 @@ std::vector<ContactPoint> MixedGrains::between_models() const {
                       .force = (1 / elastic_.dynamics().impulse_time) * impulse_vector(contact, impulse_[c]),
                       .normal = contact.normal,
                       .position = primaries.position[contact.primary] + r * contact.normal,
-                      .length = length});
+                      .length = length,
+                      .image = contact.image});
   }
   return points;
 }
@@ -179,7 +193,7 @@ void MixedGrains::add_outlines(const std::vector<ContactPoint>& points, Scene& s
   };
   for (const ContactPoint& point : points) {
     give_to(point.a, -point.force, point.position);
-    give_to(point.b, point.force, point.position);
+    give_to(point.b, point.force, point.position - point.image);
   }
   std::vector<Vec<2>> force;
   std::vector<std::int64_t> grain_of_vertex;

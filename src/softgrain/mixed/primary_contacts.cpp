@@ -26,7 +26,9 @@ PrimaryContactSystem::PrimaryContactSystem(std::span<const PrimaryContact> conta
     const double of_primary = primaries.inverse_mass[contact.primary];
     row.delassus = {mobility + of_primary, mobility + (1 + primaries.inertia_ratio) * of_primary};
     row.primary_start = primary_velocity(row);
-    const double now = contact.gap / outline.dt - dot(row.normal, row.outline_start - row.primary_start);
+    row.image = (1 / outline.dt) * contact.image_motion;
+    const Vec<2> u_found = row.outline_start + row.image - row.primary_start;
+    const double now = contact.gap / outline.dt - dot(row.normal, u_found);
     row.offset = now > 0 ? now : push_out * now;
     rows_.push_back(row);
   }
@@ -45,7 +47,7 @@ Vec<2> PrimaryContactSystem::primary_velocity(const Row& row) const {
 
 Vec<2> PrimaryContactSystem::relative_velocity(int contact) const {
   const Row& row = rows_[contact];
-  Vec<2> u = to_local(row.normal, outline_velocity(row) - primary_velocity(row));
+  Vec<2> u = to_local(row.normal, outline_velocity(row) + row.image - primary_velocity(row));
   u[0] += row.offset;
   return u;
 }
@@ -75,7 +77,8 @@ PrimaryWork PrimaryContactSystem::work(std::span<const Vec<2>> impulse) const {
                  of_primary = 0.5 * (row.primary_start + primary_velocity(row));
     work.on_outlines += dot(P, of_outline);
     work.on_primaries -= dot(P, of_primary);
-    work.friction -= impulse[c][1] * dot(perpendicular(row.normal), of_outline - of_primary);
+    work.by_cell -= dot(P, row.image);
+    work.friction -= impulse[c][1] * dot(perpendicular(row.normal), of_outline + row.image - of_primary);
   }
   return work;
 }

@@ -11,22 +11,26 @@
 
 namespace softgrain {
 
-/// A primary of a bonded grain at the outline of an elastic one. The outline's vertices meet the disk, and
-/// the disk's centre meets the smooth curve through them, so that neither sinks between the other's.
+/// A primary of a bonded grain at the outline of an elastic one. The outline's vertices meet the disk, and so
+/// does each span of the smooth curve between two of them where it comes nearest: neither sinks between the
+/// other's. A single place of the whole curve would jump from span to span, which makes energy
+/// (docs/decisions/0080).
 ///
 /// As between outlines the gap is that at the end of a flight without forces; place and normal are those
 /// half-way (OutlineContact).
 struct PrimaryContact {
   int primary = 0;
   int grain = 0;              ///< the elastic one, by its number among these
-  int vertex = -1;            ///< of the outline; or -1: the curve meets the primary
-  std::array<int, 4> span{};  ///< with c(xi) of these vertices (curve_weights)
+  int vertex = -1;            ///< of the outline; or -1: a span of its curve
+  std::array<int, 4> span{};  ///< c(xi) of these vertices (curve_weights), between the middle two
   double share = 0;           ///< xi
   Vec<2> normal{};            ///< unit, from the primary to the outline
   double gap = 0;             ///< |x - x_c| - r [m], open > 0
+  Vec<2> image{};  ///< from where the outline is to where the primary sees it, at the end of the step [m]
+  Vec<2> image_motion{};  ///< of that image against the outline over the step [m]
 
   /// The contacts of a step differ in it, and are sorted by it.
-  auto key() const { return std::tuple(primary, grain, vertex); }
+  auto key() const { return std::tuple(primary, grain, vertex >= 0 ? 2 * vertex : 2 * span[1] + 1); }
   /// visit(vertex, weight) of the outline's place x = sum weight x_k.
   template <class Visit>
   void for_each_vertex(Visit&& visit) const {
@@ -44,7 +48,8 @@ inline Vec<2> impulse_vector(const PrimaryContact& contact, const Vec<2>& impuls
 /// What contacts gave in a step, with the velocities in the mean of its start and its end [J/m].
 struct PrimaryWork {
   double on_outlines = 0, on_primaries = 0;
-  double friction = 0;  ///< of what both lost: by sliding
+  double by_cell = 0;   ///< by the cell, whose images go faster than their outlines
+  double friction = 0;  ///< of what all lost: by sliding
 };
 
 /// Contacts of primaries and outlines as a ContactSystem. At x_c + r n a primary with s = r omega moves by
@@ -52,8 +57,7 @@ struct PrimaryWork {
 ///   u = sum_k w_k v_k - v - s t,  W = diag(M + 1/m, M + (1 + kappa)/m),  M = sum_k w_k^2/m_k,
 /// kappa = m r^2/I. u_n has the offset of anticipated contacts (signorini_offset),
 ///   max(g, 0)/dt + beta min(g, 0)/dt,  g = g_end - dt n . u_found,
-/// g_end the gap of the flight with the velocities u_found. In the short steps of primaries, all of an
-/// overlap at once would make energy of what the sweeps leave (docs/decisions/0080).
+/// g_end the gap of the flight with the velocities u_found.
 class PrimaryContactSystem {
  public:
   /// At the velocities u_found with which the contacts were found. outline_velocity: (outline vertices)
@@ -82,6 +86,7 @@ class PrimaryContactSystem {
     std::array<double, 4> weight{}, mobility{};
     Vec<2> normal, delassus;
     double offset = 0;
+    Vec<2> image;                         // velocity of the outline's image against it
     Vec<2> outline_start, primary_start;  // velocities there at the start
   };
   Vec<2> outline_velocity(const Row& row) const;

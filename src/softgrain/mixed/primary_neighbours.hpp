@@ -22,9 +22,8 @@ class PrimaryNeighbours {
     int primary = 0, grain = 0;
     int begin = 0, end = 0;
   };
-  bool moved_far(std::span<const Vec<2>> outline, std::span<const Vec<2>> primary) const;
-  void find_candidates(const SoftGrains& grains, std::span<const Vec<2>> outline,
-                       std::span<const Vec<2>> primary, std::span<const double> radius);
+  bool moved_far(const OutlineState& outline) const;
+  void find_candidates(const SoftGrains& grains, const OutlineState& outline, std::span<const double> radius);
   void add_contacts(const SoftGrains& grains, const OutlineState& outline, const Candidate& candidate,
                     const Vec<2>& start, const Vec<2>& end, double radius,
                     std::vector<PrimaryContact>& found) const;
@@ -32,7 +31,9 @@ class PrimaryNeighbours {
   std::vector<Candidate> candidates_;
   std::vector<int> vertices_;
   std::vector<Vec<2>> outline_reference_, primary_reference_;  // when these were found [m]
-  std::vector<Vec<2>> flown_;                                  // primaries at the end of the flight [m]
+  PeriodicCell<2> reference_cell_;
+  double reach_ = 0;                // of candidates: the largest distance of a vertex and a centre then [m]
+  std::vector<Vec<2>> flown_;       // primaries at the end of the flight [m]
   std::vector<Vec<2>> on_the_way_;  // outlines where places and normals are taken [m]
   double segment_ = 0;              // the shortest of the undeformed round grains [m]
 };

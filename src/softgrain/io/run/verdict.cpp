@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "softgrain/experiment/kinds.hpp"
 #include "softgrain/io/run/progress.hpp"
 
 namespace softgrain {
@@ -83,7 +84,7 @@ std::vector<std::string> remedies_of(const RunReport& report, const Case& c, con
   if (!solved)
     remedies.push_back(
         "steps that do not converge: " +
-        (is_bonded(c) ? fmt::format("a larger solver.max_sweeps ({} now) or ", c.solver.max_sweeps) : "") +
+        (has_bonded(c) ? fmt::format("a larger solver.max_sweeps ({} now) or ", c.solver.max_sweeps) : "") +
         smaller_step);
   if (!(report.overlap_max <= limits.largest_overlap))
     remedies.push_back("overlaps: slower walls or " + smaller_step);

@@ -99,7 +99,6 @@ TEST_CASE("what bonded grains among elastic ones cannot do yet is refused with w
   };
   refused({"mpm.integrator=implicit"}, "with implicit steps");
   refused({"experiment.dimension=3"}, "in space");
-  refused({"box.x=periodic"}, "in a periodic cell");
   refused({"contact.surface_energy=0.1"}, "that adhere");
   refused({"contact.activation=closed_at_mid_step"}, "that rebound");
 }
