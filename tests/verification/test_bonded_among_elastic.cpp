@@ -216,6 +216,7 @@ TEST_CASE("a rigid disk presses an elastic one as it does as an outline of the e
   }
   CHECK(of_outlines > 0);
   CHECK(std::abs(force / of_outlines - 1) < 0.01);
+  CHECK(grains.energies().contact > 0);
 }
 
 TEST_CASE("a press lies on an elastic and on a bonded grain with the force that it keeps") {
@@ -238,6 +239,7 @@ TEST_CASE("a press lies on an elastic and on a bonded grain with the force that 
     bottom += box.outward_impulse(0);
   }
   CHECK(std::abs(top / (last * dt * F) - 1) < 0.01);
+  CHECK(std::abs(box.presses[0].mean_force / F - 1) < 0.05);
   CHECK(std::abs(bottom - top - (Momenta(grains).linear[1] - momentum)) < 1e-9 * top);  // they still ring
   double on_bonded = 0, on_elastic = 0;
   for (const ContactPoint& point : grains.contacts())
