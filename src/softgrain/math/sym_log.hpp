@@ -127,7 +127,7 @@ Mat<3, T> sym_exp(const Mat<3, T>& m) {
     b = (1.0 / k) * a - of.second * share;
     a = 1.0 + of.third * share;
   }
-  const Mat<3, T> result = of.polynomial(a, b, c);
+  Mat<3, T> result = of.polynomial(a, b, c);
   const auto is_near = of.size_square <= near * near;
   if (all(is_near)) return result;
   return detail::select_of(is_near, result, detail::by_eigenvectors(m, [](const T& x) { return exp(x); }));
