@@ -9,7 +9,7 @@ from .. import NotRecorded, colours, measure, picture
 from ..plot.layout import PanelGrid, page, panel_at
 from ..plot.rows import Forces, Pressure
 from ..plot.scene import draw_chains, draw_walls, extent
-from ..plot.stages import stage_at
+from ..plot.stages import stage_at, words_of
 from ..plot.style import BLUE, DOUBLE_COLUMN, GREY, INK, MM, VERMILLION
 from ..stress_unit import unit_for
 
@@ -124,6 +124,4 @@ class Film:
     def _words(self, snapshot, stage):
         unit, factor = next(((u, f) for u, f in (("s", 1), ("ms", 1e3)) if self.run.times[-1] * f >= 1), ("µs", 1e6))
         words = [f"$t$ = {snapshot.time * factor:.2f} {unit}"]
-        words += [] if stage.strain is None else [rf"$\varepsilon$ = {stage.strain + 0:.3f}"]
-        words += [] if stage.stress is None else [rf"$\sigma$ = {self.unit.text(stage.stress)}"]
-        return "      ".join(words)
+        return "      ".join(words + words_of(stage, self.unit))

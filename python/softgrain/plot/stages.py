@@ -19,10 +19,11 @@ class Stage(NamedTuple):
 def headings(stages):
     """One for each: its letter, strain and stress, all stresses in one unit."""
     unit = unit_for([stage.stress or 0 for stage in stages])
-    return [f"({letter})  " + "\n".join(_words(stage, unit)) for letter, stage in zip("abcdef", stages)]
+    return [f"({letter})  " + "\n".join(words_of(stage, unit)) for letter, stage in zip("abcdef", stages)]
 
 
-def _words(stage, unit):
+def words_of(stage, unit):
+    """Strain and stress of a stage, as far as they are known."""
     words = [] if stage.strain is None else [rf"$\varepsilon$ = {stage.strain + 0:.3f}"]
     return words + ([] if stage.stress is None else [rf"$\sigma$ = {unit.text(stage.stress)}"])
 
