@@ -111,17 +111,20 @@ def test_other_threads_run_during_a_run_and_cannot_take_the_simulation():
         while not stop.wait(0.002):
             ticks.append(simulation.steps_done)
             try:
-                simulation.step()
+                if ticks[-1] > 0:  # the run has begun: a step of this thread must not come before it
+                    simulation.step()
             except RuntimeError as error:
                 refused.append(str(error))
 
     thread = threading.Thread(target=tick)
     begin = time.monotonic()
     thread.start()
-    simulation.run()
+    try:
+        simulation.run()
+    finally:  # a thread that goes on would keep the tests from ending
+        stop.set()
+        thread.join()
     seconds = time.monotonic() - begin
-    stop.set()
-    thread.join()
     assert seconds > 0.2 and len(ticks) > 5 * seconds  # without the lock it would be one tick, or none
     assert len(set(ticks)) > 3  # the run went on meanwhile
     assert any("at work" in message for message in refused)
