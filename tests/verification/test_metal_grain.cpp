@@ -75,7 +75,7 @@ class PressedMetal {
 
 // References: finite elements of a quarter disk by an independent program, on five meshes and with two kinds
 // of elements, good to 1 % (docs/decisions/0038).
-TEST_CASE("a metal grain between plates follows the finite elements, and springs back as little") {
+TEST_CASE("a metal grain between walls follows the finite elements, and springs back as little") {
   PressedMetal press({});
   const std::vector<std::pair<double, double>> reference{{0.05, 1.003}, {0.1, 1.197}};
   for (const auto& [approach, force] : reference) {
