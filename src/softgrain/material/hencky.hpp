@@ -2,7 +2,7 @@
 #include "softgrain/material/dilatation.hpp"
 #include "softgrain/material/lame.hpp"
 #include "softgrain/material/plane_invariants.hpp"
-#include "softgrain/material/principal_stretches.hpp"
+#include "softgrain/material/space_flow.hpp"
 #include "softgrain/material/volumetric.hpp"
 #include "softgrain/math/log_ratio.hpp"
 
@@ -18,17 +18,28 @@ struct Hencky {
   /// psi(F) [J/m^3 of the undeformed material].
   template <int Dim, class T>
   T energy(const Mat<Dim, T>& F) const {
-    return response(F).energy;
+    if constexpr (Dim == 3) {
+      const SpaceTrial<T> e = logarithm(F);
+      return mu * e.square() + 0.5 * bulk() * e.log_J * e.log_J;
+    } else {
+      return response(F).energy;
+    }
   }
   /// First Piola-Kirchhoff stress P = dpsi/dF [Pa].
   template <int Dim, class T>
   Mat<Dim, T> stress(const Mat<Dim, T>& F) const {
-    return stress_of(response(F));
+    if constexpr (Dim == 3)
+      return stress_of(logarithm(F), bulk(), T(mu));
+    else
+      return stress_of(response(F));
   }
   /// dP_iJ/dF_kL [Pa] at (i Dim + J, k Dim + L).
   template <int Dim, class T>
   Mat<Dim * Dim, T> tangent(const Mat<Dim, T>& F) const {
-    return tangent_of(response(F));
+    if constexpr (Dim == 3)
+      return tangent_of(logarithm(F), bulk(), T(mu), T(0.0));
+    else
+      return tangent_of(response(F));
   }
   /// Speed of pressure waves [m/s] in the unstrained material.
   double wave_speed(double density) const { return Lame{lambda, mu}.wave_speed(density); }
@@ -60,20 +71,12 @@ struct Hencky {
             .d_JJ = (bulk * (1.0 - log_J) + mu * s * (ddf * s + 2.0 * df)) * J2};
   }
 
-  // 3D: Kirchhoff's stress tau_a = 2 mu e_a + lambda ln J.
+  // 3D: tau = 2 mu e' + bulk ln J 1, from ln sqrt(F^T F) = e' + ln J/3.
   template <class T>
-  PrincipalResponse<T> response(const Mat<3, T>& F) const {
-    PrincipalResponse<T> psi;
-    psi.frame = principal_frame(F);
-    const Vec<3, T>& s = psi.frame.stretch;
-    const Vec<3, T> e{{log(s[0]), log(s[1]), log(s[2])}};
-    const T log_J = e[0] + e[1] + e[2];
-    psi.energy = mu * dot(e, e) + 0.5 * lambda * log_J * log_J;
-    Mat<3, T> D = Mat<3, T>::diagonal({{T(2.0 * mu), T(2.0 * mu), T(2.0 * mu)}});
-    for (T& entry : D.c) entry += T(lambda);
-    differentiate(psi, e, T(mu), lambda * log_J, D);
-    return psi;
+  static SpaceTrial<T> logarithm(const Mat<3, T>& F) {
+    return space_trial(F, identity<3, T>());
   }
+  double bulk() const { return lambda + 2.0 / 3.0 * mu; }
 };
 
 /// From Young's modulus E [Pa] and Poisson's ratio nu; UsageError as lame(E, nu).
