@@ -36,6 +36,18 @@ struct BrickState {
     return theta;
   }
 
+  /// part(theta) of each point, U or U'; once where all have the mean.
+  template <class Part>
+  static std::array<Wide, 8> of_each(const std::array<Wide, 8>& theta, bool mean_dilatation,
+                                     const Part& part) {
+    std::array<Wide, 8> values;
+    if (mean_dilatation)
+      values.fill(part(theta[0]));
+    else
+      for (std::size_t p = 0; p < 8; ++p) values[p] = part(theta[p]);
+    return values;
+  }
+
   int index;  ///< of the cell
   const std::array<int, 8>& nodes;
   const SolidPoint* points;

@@ -97,11 +97,8 @@ template <class Law, class Deviatoric>
   Wide least = 1.0;
   for_each_cell(batch, [&](const BrickState& cell) {
     const std::array<Wide, 8> theta = cell.thetas(law, mean_dilatation);
-    std::array<Wide, 8> pressure;  // U'(theta)
-    if (mean_dilatation)
-      pressure.fill(law.volume().derivative(theta[0]));
-    else
-      for (std::size_t p = 0; p < 8; ++p) pressure[p] = law.volume().derivative(theta[p]);
+    const std::array<Wide, 8> pressure = BrickState::of_each(
+        theta, mean_dilatation, [&](const Wide& of) { return law.volume().derivative(of); });
     for (std::size_t p = 0; p < 8; ++p) {
       const WideSolid& F = cell.F[p];
       const Wide J = determinant(F);
@@ -149,9 +146,10 @@ template <class Law>
   Wide sum = 0.0;
   for_each_cell(batch, [&](const BrickState& cell) {
     const std::array<Wide, 8> theta = cell.thetas(law, mean_dilatation);
+    const std::array<Wide, 8> U =
+        BrickState::of_each(theta, mean_dilatation, [&](const Wide& of) { return law.volume().energy(of); });
     for (std::size_t p = 0; p < 8; ++p)
-      sum += Wide(cell.points[p].volume) *
-             (at.stored(cell, static_cast<int>(p)) + law.volume().energy(theta[p]));
+      sum += Wide(cell.points[p].volume) * (at.stored(cell, static_cast<int>(p)) + U[p]);
   });
   return sum * body_unit<3>(batch.radius);
 }
