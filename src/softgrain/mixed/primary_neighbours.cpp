@@ -127,6 +127,7 @@ void PrimaryNeighbours::add_contacts(const SoftGrains& grains, const OutlineStat
       found.back().normal = (1 / norm(d)) * d;
       found.back().gap = gap;
     }
+    if (surely_outside(outline.position, ring, v, there, radius + margin)) continue;
     const OutlineContact end_of_span = curve_contact(outline.position, ring, -1, there, v);
     if (!is_within(end_of_span.share) || end_of_span.gap < 0 || end_of_span.gap - radius >= margin) continue;
     const OutlineContact place = curve_contact(on_the_way_, ring, -1, half_way, v);

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -28,6 +29,21 @@ inline int facing_segment(const Ring& ring, std::span<const Vec<2>> position, co
   const int before = ring.previous(nearest);
   const Vec<2> tangent = position[ring.next(nearest)] - position[before];
   return dot(x - position[nearest], tangent) < 0 ? before : nearest;
+}
+
+/// True if x is surely more than `margin` outside the curve from the vertex `start` to the next. Over its
+/// chord the curve bulges by less than a quarter of the steeper of its slopes at the ends (Bezier's control
+/// points); an eighth more than the margin covers what the normal at an end is inclined.
+inline bool surely_outside(std::span<const Vec<2>> position, const Ring& ring, int start, const Vec<2>& x,
+                           double margin) {
+  const int end = ring.next(start);
+  const Vec<2> chord = position[end] - position[start], inward = perpendicular(chord);
+  const double slope = std::max(-dot(position[end] - position[ring.previous(start)], inward),
+                                dot(position[ring.next(end)] - position[start], inward)) /
+                       2;  // times |chord|
+  const double beyond = -dot(x - position[start], inward) - std::max(slope, 0.0) / 4;
+  const double least = 1.125 * margin;
+  return beyond > 0 && beyond * beyond > least * least * dot(chord, chord);
 }
 
 /// The place that a slave at x faces on the curve from the vertex `start` to the next. At a corner the curve

@@ -39,21 +39,6 @@ struct Nearest {
   double distance_squared;
 };
 
-/// True if x is surely more than `margin` outside the curve from the vertex `start` to the next. Over its
-/// chord the curve bulges by less than a quarter of the steeper of its slopes at the ends (Bezier's control
-/// points); an eighth more than the margin covers what the normal at an end is inclined.
-bool surely_outside(std::span<const Vec<2>> position, const Ring& ring, int start, const Vec<2>& x,
-                    double margin) {
-  const int end = ring.next(start);
-  const Vec<2> chord = position[end] - position[start], inward = perpendicular(chord);
-  const double slope = std::max(-dot(position[end] - position[ring.previous(start)], inward),
-                                dot(position[ring.next(end)] - position[start], inward)) /
-                       2;  // times |chord|
-  const double beyond = -dot(x - position[start], inward) - std::max(slope, 0.0) / 4;
-  const double least = 1.125 * margin;
-  return beyond > 0 && beyond * beyond > least * least * dot(chord, chord);
-}
-
 /// The vertex v and its arc against a wall. With s = n . (x_next - x_previous)/2 and theta the arc's
 /// inclination, sin theta = s/l, the lowest place of the arc is f(s) = r (1 - cos theta) below the vertex; g
 /// = h - f is concave, so that outlines clear of a wall are a convex set.
