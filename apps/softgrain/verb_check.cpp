@@ -26,6 +26,13 @@ std::vector<std::string> notes_of(const CaseReading& reading) {
   std::vector<std::string> notes = reading.notes;
   for (std::string& note : notes_on_effect(reading.the_case, reading.without_effect))
     notes.push_back(std::move(note));
+  const auto& stages = reading.the_case.stages;
+  for (std::size_t number = 0; number < stages.size(); ++number)
+    if (stages[number].repeats_in_vain())
+      notes.push_back(
+          fmt::format("note: {}: repeat has no effect, as the first turn leads to its end; give "
+                      "until.time, or repeat_from a stage that leads back",
+                      stages[number].title(number)));
   if (!is_elastic(reading.the_case)) return notes;
   const std::string_view caution = law_choice(reading.the_case.mpm.law).caution;
   if (!caution.empty()) notes.push_back(fmt::format("note: mpm.law: {}", caution));

@@ -125,6 +125,24 @@ TEST_CASE("check refuses what run would refuse, with the same words") {
   }
 }
 
+TEST_CASE("check says that a stage that is repeated alone ends where its first turn did") {
+  const Workshop workshop;
+  const std::string press = "[[stage]]\nname = 'press'\nyy.velocity = '1 m/s'\nuntil.strain = 0.1\n",
+                    note = "note: stage 'press': repeat has no effect, as the first turn leads to its end";
+  workshop.file("alone.toml", press + "repeat = 3\n");
+  workshop.file("once.toml", press);
+  workshop.file("timed.toml", press + "until.time = '1 us'\nrepeat = 3\n");
+  workshop.file("turns.toml", press +
+                                  "[[stage]]\nyy.velocity = '-1 m/s'\nuntil.strain = 0.05\n"
+                                  "repeat_from = 'press'\nrepeat = 3\n");
+  CHECK(mentions(workshop.softgrain({"check", "alone.toml"}).err, note));
+  for (const std::string name : {"once", "timed", "turns"}) {
+    const ProcessResult checked = workshop.softgrain({"check", name + ".toml"});
+    CHECK(checked.exit_code == 0);
+    CHECK_FALSE(mentions(checked.err, "repeat has no effect"));
+  }
+}
+
 TEST_CASE("check names keys without effect, the inertial number and the step, for people and for machines") {
   const Workshop workshop;
   workshop.file(

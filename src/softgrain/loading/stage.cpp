@@ -111,6 +111,13 @@ std::string Stage::title(std::size_t number) const {
   return name.empty() ? fmt::format("stage {}", number) : fmt::format("stage '{}'", name);
 }
 
+bool Stage::repeats_in_vain() const {
+  const bool alone = repeat > 1 && (repeat_from.empty() || repeat_from == name);
+  const Until place{.strain = until.strain, .packing_fraction = until.packing_fraction};
+  return alone && until == place &&
+         std::all_of(drives.begin(), drives.end(), [](const Drive& drive) { return drive.is_given(); });
+}
+
 std::vector<Stage> without_repeats(const std::vector<Stage>& stages) {
   std::vector<Stage> all;
   std::vector<std::pair<std::string, std::size_t>> begins;  // of the names, in `all`

@@ -120,6 +120,8 @@ struct Stage {
   bool is_driven(Control control) const;
   /// "stage 'press'", or "stage 3": its name, or its number from 0.
   std::string title(std::size_t number) const;
+  /// Is it repeated alone, while its walls only go towards a place, where the first turn leaves them?
+  bool repeats_in_vain() const;
 };
 
 /// Stages one after the other, with the repeated ones as often as they are asked for. Raises UsageError for a
