@@ -1,34 +1,12 @@
 #include <doctest/doctest.h>
-#include <sys/mount.h>
 
 #include "reliability/tiny_cases.hpp"
+#include "support/small_disk.hpp"
 
 namespace fs = std::filesystem;
 using namespace softgrain::test;
 
 namespace {
-
-/// A disk of a few kB, where mounting is allowed.
-class SmallDisk {
- public:
-  SmallDisk(const fs::path& at, const std::string& size) : at_(at) {
-    fs::create_directories(at);
-    mounted_ = ::mount("none", at.c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0;
-  }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-  ~SmallDisk() {
-    if (mounted_) ::umount(at_.c_str());
-  }
-  bool mounted() const { return mounted_; }
-  void enlarge(const std::string& size) const {
-    REQUIRE(::mount("none", at_.c_str(), "tmpfs", MS_REMOUNT, ("size=" + size).c_str()) == 0);
-  }
-
- private:
-  fs::path at_;
-  bool mounted_ = false;
-};
 
 /// Every file that a program may read under its final name is whole, and none is left unfinished.
 void check_nothing_partial(const Workshop& workshop, const std::string& run) {

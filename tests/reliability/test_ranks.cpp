@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "reliability/tiny_cases.hpp"
+#include "support/small_disk.hpp"
 
 using namespace softgrain::test;
 
@@ -72,6 +73,15 @@ std::vector<pid_t> children_of(pid_t parent) {
   std::vector<pid_t> children;
   for (pid_t child = 0; file >> child;) children.push_back(child);
   return children;
+}
+
+/// The most memory that a rank of a run has held [bytes].
+struct PeakMemory {
+  double mean = 0, largest = 0;
+};
+PeakMemory peak_memory(const Ranks& ranks, const std::string& run) {
+  const auto told = nlohmann::json::parse(read_text(ranks.workshop.path(run) / "run.json")).at("ranks");
+  return {told.at("peak_memory_bytes_mean"), told.at("peak_memory_bytes_largest")};
 }
 
 void wait_for_snapshots(const Ranks& ranks, const std::string& run, std::size_t count) {
@@ -170,6 +180,28 @@ TEST_CASE("a killed rank ends all, and other numbers of ranks go on to the same 
   CHECK(same_series);
 }
 
+// The first rank once held all material points for each snapshot, 300 bytes for each, and all ranks held a
+// snapshot from which they went on, 400 bytes.
+TEST_CASE("the first rank holds hardly more than the others, also while it writes, and while all read") {
+  const Ranks ranks;
+  const TinyCase tiny = packing("large", "compaction-mpm",
+                                {"mpm.integrator=\"explicit\"", "mpm.cells=24", "sample.grains=24",
+                                 "output.samples=2", "output.snapshots=2", "loading.wall_velocity=\"20 m/s\"",
+                                 "loading.max_strain=0.0002", "loading.unload_at=[]", "time.step=0"});
+  constexpr double points = 24 * 14 * 24 * 24, few = 60 * points;  // [bytes]
+  REQUIRE(ranks.on(3, ranks.begin(tiny, "large", {"-j", "1"})).exit_code == 0);
+  const PeakMemory begun = peak_memory(ranks, "large");
+  CAPTURE(begun.mean);
+  CAPTURE(begun.largest);
+  CHECK(begun.largest - begun.mean < few);
+  copy_cut_off(ranks.workshop, "large", "on", ranks.workshop.snapshots("large").size() - 1);
+  REQUIRE(ranks.on(3, {"resume", "on", "-q", "-j", "1"}).exit_code == 0);
+  CHECK(ranks.workshop.last_hash("on") == ranks.workshop.last_hash("large"));
+  const PeakMemory gone_on = peak_memory(ranks, "on");
+  CAPTURE(gone_on.largest);
+  CHECK(gone_on.largest - begun.mean < few);
+}
+
 TEST_CASE("what stops one rank stops all of them with its exit code, and with its error once") {
   const Ranks ranks;
   const auto lines_with = [](const std::string& text, const std::string& words) {
@@ -210,6 +242,20 @@ TEST_CASE("what stops one rank stops all of them with its exit code, and with it
     CAPTURE(result.err);
     CHECK(result.exit_code == 4);
     CHECK(lines_with(result.err, "error:") == 1);
+  }
+  SUBCASE("a disk that is full while the others give their particles") {
+    const SmallDisk disk(ranks.workshop.path("disk"), "200k");
+    if (!disk.mounted()) {
+      MESSAGE("may not mount a small disk here");
+      return;
+    }
+    const auto begin = Clock::now();
+    const ProcessResult result = ranks.on(3, ranks.begin(packings()[2], "disk/run"));
+    CHECK(Clock::now() - begin < std::chrono::seconds(30));
+    CAPTURE(result.err);
+    CHECK(result.exit_code == 4);
+    CHECK(lines_with(result.err, "bytes: No space left on device") == 1);
+    CHECK(std::filesystem::is_empty(ranks.workshop.path("disk/run/snap")));
   }
   SUBCASE("a rank that answers no more, as behind a link that is cut") {
     if (!torture()) return;

@@ -85,6 +85,16 @@ ssize_t write(int file, const void* bytes, size_t size) {
   return NEXT(write)(file, bytes, size);
 }
 
+ssize_t pwrite(int file, const void* bytes, size_t size, off_t at) {
+  if (fails("write")) return errno = ENOSPC, -1;
+  return NEXT(pwrite)(file, bytes, size, at);
+}
+
+ssize_t pwrite64(int file, const void* bytes, size_t size, off64_t at) {
+  if (fails("write")) return errno = ENOSPC, -1;
+  return NEXT(pwrite64)(file, bytes, size, at);
+}
+
 int fsync(int file) {
   if (fails("fsync")) return errno = EIO, -1;
   return NEXT(fsync)(file);

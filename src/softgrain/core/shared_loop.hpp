@@ -144,6 +144,10 @@ class RankError {
     }
   }
   explicit operator bool() const { return error_ != nullptr; }
+  /// On this rank alone, if it has one.
+  void raise_here() const {
+    if (error_ != nullptr) std::rethrow_exception(error_);
+  }
   /// On all ranks at once: the error of the first rank that has one, if any has.
   void raise_first() const;
   /// On all ranks: that of `rank`, which has one.
@@ -235,6 +239,29 @@ void collect(const Shares& shares, int count, const UnitOf& unit_of, const Resul
   for (int r = 1; r < communicator().ranks(); ++r) {
     std::vector<std::byte> bytes = detail::receive_from(r);
     pass(r, {bytes.data(), false});
+  }
+}
+
+/// work() on one rank; the first rank gets what result(message) names of it, all lengths told. An error of
+/// work() stays on its rank, where it is raised; the first one gets nothing then.
+template <class Work, class Result>
+void tell_first(int rank, const Work& work, const Result& result) {
+  const int me = communicator().rank();
+  if (me == rank) {
+    RankError error;
+    error.catch_from(work);
+    if (me == 0) return error.raise_here();
+    Message count;
+    if (!error) result(count);
+    std::vector<std::byte> bytes(count.bytes());
+    Message message(bytes.data(), true);
+    if (!error) result(message);
+    detail::send_to_first(bytes);
+    error.raise_here();
+  } else if (me == 0) {
+    std::vector<std::byte> bytes = detail::receive_from(rank);
+    Message message(bytes.data(), false);
+    if (!bytes.empty()) result(message);
   }
 }
 

@@ -216,9 +216,23 @@ double SimulationOf<Dim>::largest_rate() const {
   return std::max(largest, std::abs(L(0, 1)));
 }
 
+/// In a periodic cell each grain is shown through its image whose centre lies there.
 template <int Dim>
-Scene SimulationOf<Dim>::scene() const {
-  Scene scene = model_->scene(box_);
+ParticleParts SimulationOf<Dim>::particle_parts() const {
+  ParticleParts parts = model_->particle_parts();
+  if (parts.count == 0 || !box_.cell.any()) return parts;
+  parts.rows = [this, centres = model_->centres(), rows = std::move(parts.rows)](int part) {
+    Scene moved;
+    moved.particles = rows(part);
+    move_into_cell<Dim>(box_.cell, centres, moved);
+    return std::move(moved.particles);
+  };
+  return parts;
+}
+
+/// A scene with the walls, or a cell, around its grains.
+template <int Dim>
+Scene SimulationOf<Dim>::in_box(Scene scene) const {
   if constexpr (Dim == 3) {
     if (box_.cell.any()) move_into_cell<3>(box_.cell, model_->centres(), scene);
     add_faces(box_, model_->reach(), scene);

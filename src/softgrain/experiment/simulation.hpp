@@ -54,6 +54,10 @@ class AnySimulation {
   virtual Observation observe() const = 0;
   virtual void begin_row() = 0;
   virtual Scene scene() const = 0;
+  /// The particles of the same scene, if they come in parts; and the scene without them. They hold until the
+  /// next step.
+  virtual ParticleParts particle_parts() const { return {}; }
+  virtual Scene scene_without_parts() const { return scene(); }
 
   virtual Checkpoint checkpoint() const = 0;
   /// Raises IoError for a checkpoint that is not of this case.
@@ -107,7 +111,9 @@ class SimulationOf final : public AnySimulation {
   Observation observe() const override;
   void begin_row() override;
   Energies energies() const;
-  Scene scene() const override;
+  Scene scene() const override { return in_box(model_->scene(box_)); }
+  ParticleParts particle_parts() const override;
+  Scene scene_without_parts() const override { return in_box(model_->scene_without_parts(box_)); }
   std::vector<GrainView> grains() const { return model_->grains(); }
   const ModelOf<Dim>& model() const { return *model_; }
   const Box<Dim>& box() const { return box_; }
@@ -125,6 +131,7 @@ class SimulationOf final : public AnySimulation {
   };
   void apply_settings() { model_->set(initial_.then(loading_.settings())); }
   StepFelt felt_in(const StepReport& report);
+  Scene in_box(Scene scene) const;
   PackingMeasures packing() const;
   BodiesOf<Dim> over_cell(BodiesOf<Dim> bodies) const;
   double largest_rate() const;

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -36,6 +37,14 @@ struct Scene {
       wall_segments;  ///< in the plane x0 y0 x1 y1 for each wall, or edge of a periodic cell [m]
   /// Its lattice vectors, x0 y0 x1 y1, in space three of three, 0 for one that it has not [m]; or empty
   std::vector<double> cell;
+};
+
+/// Particles of a scene that come part after part, so that those of a large packing are nowhere whole.
+struct ParticleParts {
+  int count = 0;       ///< 0: the scene has its particles itself
+  ArrayShapes arrays;  ///< of all parts together
+  /// Those of part 0, 1, ... On several ranks all ask at once, for the first one.
+  std::function<Arrays(int part)> rows;
 };
 
 /// Vectors where they lie in memory: component d of row i is begin[i * row + d * component].
@@ -132,6 +141,10 @@ class ModelOf {
   virtual Numbers numbers(const Box<Dim>& box, const Energies& energies) const = 0;
   /// Points, contacts and outlines; of walls without sides the x from which to which they are drawn.
   virtual Scene scene(const Box<Dim>& box) const = 0;
+  /// The particles of the same scene, if they come in parts; and the scene without them. They hold until the
+  /// next step.
+  virtual ParticleParts particle_parts() const { return {}; }
+  virtual Scene scene_without_parts(const Box<Dim>& box) const { return scene(box); }
   virtual std::pair<double, double> reach() const = 0;
   virtual std::vector<GrainView> grains() const = 0;
 

@@ -51,6 +51,8 @@ class ElasticGrains final : public ModelOf<Dynamics::dimension> {
   Energies energies() const override;
   Numbers numbers(const Box<Dim>& box, const Energies& energies) const override;
   Scene scene(const Box<Dim>&) const override { return soft_scene(view()); }
+  ParticleParts particle_parts() const override { return softgrain::particle_parts(view()); }
+  Scene scene_without_parts(const Box<Dim>&) const override { return scene_around_points(view()); }
   std::pair<double, double> reach() const override;
   std::vector<GrainView> grains() const override { return grain_views(dynamics_.grains); }
   PressBody press_body(const Box<Dim>& box, int axis, double dt) const override;

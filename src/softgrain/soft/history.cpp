@@ -102,6 +102,9 @@ template <int Dim>
 void visit_history(GrainsOf<Dim>& grains, StateVisitor& visit) {
   if (!grains.has_history()) return;
   std::vector<double> values;
+  std::size_t numbers = 0;
+  for (const BatchOf<Dim>& batch : grains.batches) numbers += batch.history.size() * Wide::size;
+  values.reserve(numbers);
   for (const BatchOf<Dim>& batch : grains.batches)
     for (const Wide& number : batch.history)
       for (int lane = 0; lane < Wide::size; ++lane) values.push_back(number[lane]);
@@ -110,6 +113,7 @@ void visit_history(GrainsOf<Dim>& grains, StateVisitor& visit) {
        "of each point of eight grains C_p^-1 (11, 22, 12) and the plastic strain; of what relaxes U and "
        "C_v^-1 of four branches (11, 22, 12 each); in space F_p^-1, or F and F_v^-1"},
       values, Wide::size);
+  if (!visit.reads()) return;
   const double* value = values.data();
   for (BatchOf<Dim>& batch : grains.batches)
     for (Wide& number : batch.history) {

@@ -38,11 +38,10 @@ void respond(const LawAtPoints<Law>& at, const CellState& cell, int p, int lane,
   point.plastic_strain = Law::plastic_strain(state);
 }
 
-/// Points of one lane.
+/// Points of one lane; Q: how it was placed.
 template <class Law>
-void add_point_states(const LawAtPoints<Law>& at, const CellState& cell, const Mat<2>& Q, int lane,
-                      std::vector<PointState>& states) {
-  const Wide pressure = at.law.volume().derivative(cell.mean(at.law.dilatation()));
+void add_point_states(const LawAtPoints<Law>& at, const CellState& cell, const Wide& pressure,
+                      const Mat<2>& Q, int lane, std::vector<PointState>& states) {
   for (int p = 0; p < 4; ++p) {
     Mat<2> F;
     for (std::size_t k = 0; k < 4; ++k) F.c[k] = cell.F[p].c[k][lane];
@@ -54,21 +53,31 @@ void add_point_states(const LawAtPoints<Law>& at, const CellState& cell, const M
 
 }  // namespace
 
-std::vector<PointState> point_states(const SoftGrains& grains, int grain) {
-  const auto place = grains.batch_of(grain);
-  const GrainBatch* batch = place.first;  // not a structured binding: clang 14 keeps those out of lambdas
-  const int lane = place.second;
-  Mat<2> Q;
-  for (std::size_t k = 0; k < 4; ++k) Q.c[k] = placed_rotation(*batch).c[k][lane];
-  std::vector<PointState> states;
+std::array<std::vector<PointState>, Wide::size> point_states(const SoftGrains& grains,
+                                                             const GrainBatch& batch, unsigned lanes) {
+  std::array<Mat<2>, Wide::size> Q;
+  std::array<std::vector<PointState>, Wide::size> states;
+  const auto placed = placed_rotation(batch);
+  for (int lane = 0; lane < Wide::size; ++lane) {
+    for (std::size_t k = 0; k < 4; ++k) Q[lane].c[k] = placed.c[k][lane];
+    if ((lanes >> lane & 1U) != 0) states[lane].reserve(batch.topology->points.size());
+  }
   std::visit(
       [&]<class Law>(const Law& law) {
-        const LawAtPoints<Law> at(law, *batch, 0);
-        for_each_cell(law, *batch,
-                      [&](const CellState& cell) { add_point_states(at, cell, Q, lane, states); });
+        const LawAtPoints<Law> at(law, batch, 0);
+        for_each_cell(law, batch, [&](const CellState& cell) {
+          const Wide pressure = law.volume().derivative(cell.mean(law.dilatation()));
+          for (int lane = 0; lane < Wide::size; ++lane)
+            if ((lanes >> lane & 1U) != 0) add_point_states(at, cell, pressure, Q[lane], lane, states[lane]);
+        });
       },
-      grains.law(*batch));
+      grains.law(batch));
   return states;
+}
+
+std::vector<PointState> point_states(const SoftGrains& grains, int grain) {
+  const auto [batch, lane] = grains.batch_of(grain);
+  return std::move(point_states(grains, *batch, 1U << lane)[lane]);
 }
 
 }  // namespace softgrain

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "softgrain/soft/soft_grains.hpp"
@@ -13,7 +14,11 @@ struct PointState {
   double von_mises = 0;  ///< sqrt(3/2) |dev sigma| [Pa] of laws that flow
   double plastic_strain = 0;  ///< alpha
 };
-/// All points of one grain, four by four in the order of the cells; U' at the mean of the cell.
+/// All points of the grain in each lane of a batch whose bit is set, four by four in the order of the cells;
+/// U' at the mean of the cell.
+std::array<std::vector<PointState>, Wide::size> point_states(const SoftGrains& grains,
+                                                             const GrainBatch& batch, unsigned lanes);
+/// Of one grain.
 std::vector<PointState> point_states(const SoftGrains& grains, int grain);
 
 }  // namespace softgrain

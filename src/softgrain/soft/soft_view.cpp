@@ -61,6 +61,9 @@ Outlines outlines_of(const SoftGrains& grains) {
 template <int Dim>
 BodiesOf<Dim> nodes_of(const GrainsOf<Dim>& grains) {
   BodiesOf<Dim> nodes;
+  std::size_t count = 0;
+  for (int g = 0; g < grains.size(); ++g) count += static_cast<std::size_t>(grains.topology(g).grid.nodes());
+  nodes.mass.reserve(count), nodes.velocity.reserve(count), nodes.grain.reserve(count);
   for (int g = 0; g < grains.size(); ++g) {
     const auto [batch, lane] = grains.batch_of(g);
     for (int i = 0; i < grains.topology(g).grid.nodes(); ++i) {
@@ -128,13 +131,17 @@ std::vector<GrainView> grain_views(const GrainsOf<Dim>& grains) {
 template <int Dim>
 void visit_nodes(GrainsOf<Dim>& grains, StateVisitor& visit) {
   using Batch = BatchOf<Dim>;
+  std::size_t numbers = 0;
+  for (const Batch& batch : grains.batches) numbers += batch.position.size() * Dim * Wide::size;
   const auto declare = [&](const Field& field, WidePlaces<Dim> Batch::*nodes) {
     std::vector<double> values;
+    values.reserve(numbers);
     for (const Batch& batch : grains.batches)
       for (const Vec<Dim, Wide>& v : batch.*nodes)
         for (int d = 0; d < Dim; ++d)
           for (int lane = 0; lane < Wide::size; ++lane) values.push_back(v[d][lane]);
     visit.rows(field, values, Wide::size);
+    if (!visit.reads()) return;
     const double* value = values.data();
     for (Batch& batch : grains.batches)
       for (Vec<Dim, Wide>& v : batch.*nodes)

@@ -46,10 +46,16 @@ double least_J(const GrainsOf<Dim>& grains);
 /// Material points as disks of their present area, the outlines with the contact forces on their vertices,
 /// and the contacts of grains.
 Scene soft_scene(const SoftView& view);
+/// The points of up to eight grains at a time, from the rank that has them; and the scene without them. Keeps
+/// the references of the view.
+ParticleParts particle_parts(const SoftView& view);
+Scene scene_around_points(const SoftView& view);
 
 /// In space the outlines' vertices with the contact forces on them, their quads with the pressure of the
 /// cells behind, and the contacts of grains; centres and radii of the grains as particles.
 Scene soft_scene(const SoftViewOf<3>& view);
+inline ParticleParts particle_parts(const SoftViewOf<3>&) { return {}; }  ///< they are not many
+inline Scene scene_around_points(const SoftViewOf<3>& view) { return soft_scene(view); }
 
 /// The nodes of each grain in its lane.
 template <int Dim>

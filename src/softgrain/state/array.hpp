@@ -18,6 +18,18 @@ struct Array {
 
 using Arrays = std::map<std::string, Array>;
 
+/// What an array is, without its values.
+struct ArrayShape {
+  std::size_t rows = 0, columns = 1;
+  bool integers = false;
+};
+using ArrayShapes = std::map<std::string, ArrayShape>;
+
+inline ArrayShape shape_of(const Array& array) {
+  const auto size = std::visit([](const auto& values) { return values.size(); }, array.values);
+  return {.rows = size / array.columns, .columns = array.columns, .integers = array.values.index() == 1};
+}
+
 /// The numbers of vectors, row by row.
 template <int N>
 std::vector<double> flat_rows(const std::vector<Vec<N>>& rows) {

@@ -256,3 +256,35 @@ TEST_CASE("the first rank collects what it writes, the others learn nothing") {
   });
   CHECK(told_by_first == std::vector<double>{10, 10, 10});
 }
+
+TEST_CASE("the first rank is told what one rank has worked on, and nothing where its work failed") {
+  struct Heard {
+    std::vector<int> numbers;
+    std::string error;
+  };
+  for (const int worker : {0, 2})
+    for (const bool fails : {false, true}) {
+      CAPTURE(worker);
+      CAPTURE(fails);
+      const auto heard = on_ranks(3, [&](int rank) {
+        Heard mine;
+        try {
+          tell_first(
+              worker,
+              [&] {
+                CHECK(rank == worker);
+                mine.numbers = {3, 1, 4};
+                if (fails) throw NumericalError("turned inside out");
+              },
+              [&](Message& message) { message.list(mine.numbers); });
+        } catch (const NumericalError& error) {
+          mine.error = error.what();
+        }
+        return mine;
+      });
+      CHECK(heard[0].numbers == (fails && worker != 0 ? std::vector<int>{} : std::vector{3, 1, 4}));
+      CHECK(heard[1].numbers.empty());
+      for (int rank = 0; rank < 3; ++rank)
+        CHECK(heard[rank].error == (fails && rank == worker ? "turned inside out" : ""));
+    }
+}

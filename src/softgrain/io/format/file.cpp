@@ -72,46 +72,39 @@ Descriptor open_file(const fs::path& path, int flags) {
   return file;
 }
 
-std::string read_file(const fs::path& path) {
-  const Descriptor file = open_file(path, O_RDONLY | O_NONBLOCK);  // a named pipe must not hold us up
+Descriptor open_regular_file(const fs::path& path) {
+  Descriptor file = open_file(path, O_RDONLY | O_NONBLOCK);  // a named pipe must not hold us up
   struct stat status {};
   if (::fstat(file.number(), &status) != 0) fail(path, "cannot read");
   if (!S_ISREG(status.st_mode)) throw IoError(fmt::format("{}: not a regular file", path.string()));
-  return read_all(file, path, std::numeric_limits<std::size_t>::max());
+  return file;
+}
+
+std::size_t file_size(const Descriptor& file, const fs::path& path) {
+  struct stat status {};
+  if (::fstat(file.number(), &status) != 0) fail(path, "cannot read");
+  return static_cast<std::size_t>(status.st_size);
+}
+
+std::string read_file(const fs::path& path) {
+  return read_all(open_regular_file(path), path, std::numeric_limits<std::size_t>::max());
 }
 
 std::string read_beginning(const fs::path& path, std::size_t size) {
   return read_all(open_file(path, O_RDONLY), path, size);
 }
 
-PendingFile::PendingFile(fs::path path, std::initializer_list<std::string_view> pieces, Survives survives)
-    : path_(std::move(path)), temporary_(path_.string() + ".tmp"), survives_(survives) {
-  Descriptor file = open_file(temporary_, O_WRONLY | O_CREAT | O_TRUNC);
-  std::size_t size = 0;
-  bool ok = true;
-  for (const std::string_view piece : pieces) {
-    size += piece.size();
-    ok = ok && write_all(file.number(), piece) == piece.size();
-  }
-  ok = ok && (survives_ == Survives::kill || ::fsync(file.number()) == 0);
-  if (ok && file.close()) return;
-  const int error = errno;
-  ::unlink(temporary_.c_str());
-  errno = error;
-  fail(path_, fmt::format("cannot write {} bytes", size));
-}
+PendingFile::PendingFile(fs::path path, Survives survives)
+    : path_(std::move(path)),
+      temporary_(path_.string() + ".tmp"),
+      file_(open_file(temporary_, O_RDWR | O_CREAT | O_TRUNC)),
+      survives_(survives) {}
 
-void PendingFile::check(std::initializer_list<std::string_view> pieces) const {
-  const Descriptor file = open_file(temporary_, O_RDONLY);
-  const auto comes_back = [&](std::string_view piece) {
-    constexpr std::size_t at_once = 1 << 20;
-    for (; !piece.empty(); piece.remove_prefix(std::min(at_once, piece.size())))
-      if (read_all(file, temporary_, std::min(at_once, piece.size())) != piece.substr(0, at_once))
-        return false;
-    return true;
-  };
-  if (!std::all_of(pieces.begin(), pieces.end(), comes_back) || !read_all(file, temporary_, 1).empty())
-    throw IoError(fmt::format("{}: the disk does not give back what was written", path_.string()));
+void PendingFile::end_writing(std::size_t size, int error) {
+  if (error == 0 && survives_ == Survives::power_cut && ::fsync(file_.number()) != 0) error = errno;
+  if (error == 0 && file_.close()) return;
+  if (error != 0) errno = error;
+  fail(path_, fmt::format("cannot write {} bytes", size));
 }
 
 PendingFile::~PendingFile() {
@@ -126,7 +119,10 @@ void PendingFile::commit() {
 }
 
 void write_file(const fs::path& path, std::string_view bytes, Survives survives) {
-  PendingFile(path, {bytes}, survives).commit();
+  PendingFile file(path, survives);
+  const bool written = write_all(file.descriptor(), bytes) == bytes.size();
+  file.end_writing(bytes.size(), written ? 0 : errno);
+  file.commit();
 }
 
 AppendFile::AppendFile(fs::path path)

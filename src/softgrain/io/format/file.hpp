@@ -1,6 +1,5 @@
 #pragma once
 #include <filesystem>
-#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -29,7 +28,12 @@ class Descriptor {
 /// open(2) with O_CLOEXEC and mode 0666. Raises IoError.
 Descriptor open_file(const std::filesystem::path& path, int flags);
 
-/// The whole file, which must be a regular one: never waits for a pipe or reads a device. Raises IoError.
+/// For reading. It must be a regular one: never waits for a pipe or reads a device. Raises IoError.
+Descriptor open_regular_file(const std::filesystem::path& path);
+/// [bytes]. Raises IoError.
+std::size_t file_size(const Descriptor& file, const std::filesystem::path& path);
+
+/// The whole file, which must be a regular one. Raises IoError.
 std::string read_file(const std::filesystem::path& path);
 
 /// The first `size` bytes of anything that can be read, or all when there are fewer. Raises IoError.
@@ -42,20 +46,22 @@ enum class Survives { kill, power_cut };
 /// renames. Without `commit` nothing is left. Raises IoError naming the path and the bytes needed.
 class PendingFile {
  public:
-  /// The pieces one behind the other.
-  PendingFile(std::filesystem::path path, std::initializer_list<std::string_view> pieces,
-              Survives survives = Survives::power_cut);
+  /// An empty one, for whoever fills it and then calls end_writing.
+  explicit PendingFile(std::filesystem::path path, Survives survives = Survives::power_cut);
   ~PendingFile();
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;
 
   const std::filesystem::path& temporary() const { return temporary_; }
-  /// Raises IoError unless the disk gives these pieces back.
-  void check(std::initializer_list<std::string_view> pieces) const;
+  /// For reading and writing.
+  int descriptor() const { return file_.number(); }
+  /// Of so many bytes; `error` is the errno of a write that failed, or 0.
+  void end_writing(std::size_t size, int error);
   void commit();
 
  private:
   std::filesystem::path path_, temporary_;
+  Descriptor file_;
   Survives survives_;
   bool committed_ = false;
 };

@@ -23,10 +23,10 @@ constexpr std::int64_t format_version = 1;
 /// Absolute path in the file -> dataset.
 using Datasets = std::map<std::string, Array>;
 
-const std::string checkpoint_group = "/checkpoint/", particle_group = "/scene/particles/",
-                  contact_group = "/scene/contacts/", outline_group = "/scene/outlines/",
-                  surface_group = "/scene/surface/", walls_path = "/scene/walls", cell_path = "/scene/cell",
-                  run_group = "/run/";
+const std::string checkpoint_group = "/checkpoint/", scene_group = "/scene/",
+                  particle_group = "/scene/particles/", contact_group = "/scene/contacts/",
+                  outline_group = "/scene/outlines/", surface_group = "/scene/surface/",
+                  walls_path = "/scene/walls", cell_path = "/scene/cell", run_group = "/run/";
 
 class Hash {
  public:
@@ -42,10 +42,16 @@ class Hash {
   XXH3_state_t state_;
 };
 
-/// XXH3-128 of all bytes; it ends the file, so that a flipped bit is found wherever it lies.
-std::string file_hash(std::string_view bytes) {
+/// XXH3-128 of the first bytes of a file; it ends the file, so that a flipped bit is found wherever it lies.
+std::string file_hash(ByteStore& file, std::size_t size, const std::string& name) {
+  constexpr std::size_t at_once = 1 << 20;
   Hash hash;
-  hash.add(bytes.data(), bytes.size());
+  std::string bytes;
+  for (std::size_t begin = 0; begin < size; begin += bytes.size()) {
+    bytes.resize(std::min(at_once, size - begin));
+    if (!file.read(begin, bytes)) throw IoError(fmt::format("{}: the disk does not give it back", name));
+    hash.add(bytes.data(), bytes.size());
+  }
   return hash.digest();
 }
 
@@ -54,22 +60,32 @@ constexpr std::size_t hash_length = 32;
 /// XXH3-128 over the datasets in the order of their paths: path, 0, 'f' or 'i', rows, columns, values.
 class ContentHash {
  public:
-  void add(const std::string& path, const Array& array) {
+  void begin(const std::string& path, const ArrayShape& shape) {
     hash_.add(path.c_str(), path.size() + 1);
-    hash_.add(array.values.index() == 0 ? "f" : "i", 1);
-    std::visit(
-        [this, columns = array.columns](const auto& values) {
-          hash_.add(values.size() / columns);
-          hash_.add(columns);
-          hash_.add(values.data(), values.size() * sizeof values[0]);
-        },
-        array.values);
+    hash_.add(shape.integers ? "i" : "f", 1);
+    hash_.add(shape.rows);
+    hash_.add(shape.columns);
+  }
+  void add(const Array& rows) {
+    std::visit([this](const auto& values) { hash_.add(values.data(), values.size() * sizeof values[0]); },
+               rows.values);
+  }
+  /// Of a dataset, of which a chunk at a time is in memory.
+  void add(const Hdf5File& file, const std::string& path) {
+    begin(path, file.shape(path));
+    file.read_in_blocks(path, [this](const Array& rows) { add(rows); });
   }
   std::string digest() const { return hash_.digest(); }
 
  private:
   Hash hash_;
 };
+
+std::string content_hash(const Hdf5File& file) {
+  ContentHash hash;
+  for (const std::string& path : file.datasets()) hash.add(file, path);
+  return hash.digest();
+}
 
 /// Of these 0.1.0 before its release knew nothing.
 constexpr std::array<std::string_view, 3> later_totals{"residual_limit", "energy_error", "energy_scale"};
@@ -121,7 +137,7 @@ std::map<std::string, Array> arrays_of(Datasets& datasets, const std::string& gr
 }
 
 /// Distributes datasets whose hash is right; what is missing then was written by another program.
-Snapshot snapshot_of(Datasets datasets, const std::string& name) {
+Snapshot snapshot_of(Datasets datasets, const std::string& name, SnapshotParts wanted) {
   Snapshot snapshot;
   try {
     snapshot.checkpoint.arrays = arrays_of(datasets, checkpoint_group);
@@ -129,7 +145,8 @@ Snapshot snapshot_of(Datasets datasets, const std::string& name) {
     snapshot.scene.contacts = arrays_of(datasets, contact_group);
     snapshot.scene.outlines = arrays_of(datasets, outline_group);
     snapshot.scene.surface = arrays_of(datasets, surface_group);
-    snapshot.scene.wall_segments = std::get<std::vector<double>>(datasets.at(walls_path).values);
+    if (wanted == SnapshotParts::all)
+      snapshot.scene.wall_segments = std::get<std::vector<double>>(datasets.at(walls_path).values);
     if (const auto cell = datasets.find(cell_path); cell != datasets.end())
       snapshot.scene.cell = std::get<std::vector<double>>(cell->second.values);
     for_each_total(snapshot.report, snapshot.sums, [&]<class T>(std::string_view total, T& value) {
@@ -145,15 +162,16 @@ Snapshot snapshot_of(Datasets datasets, const std::string& name) {
   return snapshot;
 }
 
-/// The HDF5 file in front of the hash. The library must not see damaged bytes: it may crash on them.
-std::string_view checked_contents(std::string_view bytes, const std::string& name) {
+/// Raises IoError unless it is an HDF5 file with its hash behind it. The library must not see damaged bytes:
+/// it may crash on them.
+void check_bytes(ByteStore& file, const std::string& name) {
   constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
-  if (!bytes.starts_with(signature))
+  std::string begin(signature.size(), '\0'), hash(hash_length, '\0');
+  if (!file.read(0, begin) || begin != signature)
     throw IoError(fmt::format("{}: not a snapshot: no HDF5 file, or one without its beginning", name));
-  const auto contents = bytes.substr(0, bytes.size() - std::min(bytes.size(), hash_length));
-  if (bytes.substr(contents.size()) != file_hash(contents))
+  const std::size_t size = file.size() - std::min(file.size(), hash_length);
+  if (!file.read(size, hash) || hash != file_hash(file, size, name))
     throw IoError(fmt::format("{}: not a snapshot, or a damaged one: the hash at its end is wrong", name));
-  return contents;
 }
 
 void check_format(const Hdf5Reader& file, const std::string& name) {
@@ -169,12 +187,10 @@ void check_format(const Hdf5Reader& file, const std::string& name) {
 
 /// Raises std::bad_alloc here, where it is caught, if there is no room for what the HDF5 library will need:
 /// it may crash where it runs out of memory.
-void require_room(const Datasets& datasets) {
-  std::size_t numbers = 0;
-  for (const auto& [path, array] : datasets)
-    numbers += std::visit([](const auto& values) { return values.size(); }, array.values);
+void require_room(std::size_t open_datasets) {
+  constexpr std::size_t of_dataset = 2 << 20;  // a chunk in its cache, and on its way through the checksum
   std::string room;
-  room.reserve(3 * sizeof(double) * numbers);  // its image, which doubles when it is full
+  room.reserve((open_datasets + 1) * of_dataset);
 }
 
 }  // namespace
@@ -190,11 +206,42 @@ void StepSums::add(const StepReport& step) {
 
 namespace {
 
-/// The HDF5 file in front of the hash. An array is given up as soon as it stands in the file: of a large run
-/// there is no room for all of them twice.
-FileImage image_of(Snapshot snapshot, const std::string& name) {
+/// Writes each array of a state as it sees it.
+class StateToFile final : public StateVisitor {
+ public:
+  explicit StateToFile(Hdf5Writer& file) : file_(file) {}
+  bool reads() const override { return false; }
+
+ private:
+  void reals(const Field& field, std::vector<double>& values, std::size_t columns, Length) override {
+    file_.write(checkpoint_group + field.name, values, columns);
+  }
+  void integers(const Field& field, std::vector<std::int64_t>& values, std::size_t columns, Length) override {
+    file_.write(checkpoint_group + field.name, values, columns);
+  }
+
+  Hdf5Writer& file_;
+};
+
+void write_parts(Hdf5Writer& file, const ParticleParts& parts) {
+  for (const auto& [name, shape] : parts.arrays) file.begin_dataset(particle_group + name, shape);
+  std::map<std::string, std::size_t> written;
+  for (int part = 0; part < parts.count; ++part)
+    for (const auto& [name, rows] : parts.rows(part)) {
+      file.write_rows(particle_group + name, written[name], rows);
+      written[name] += shape_of(rows).rows;
+    }
+  for (const auto& [name, shape] : parts.arrays)
+    if (written[name] != shape.rows) throw IoError(fmt::format("a rank did not give its rows of '{}'", name));
+}
+
+/// An array is given up as soon as it stands in the file: of a large run there is no room for all of them
+/// twice. The hashes are of what the store gives back. Where the store has an error, nothing is complete.
+void write_into(ByteStore& store, Snapshot snapshot, const SnapshotStreams& streams,
+                const std::string& name) {
   const BuildInfo build = build_info();
-  Hdf5Writer file(name);
+  require_room(streams.particles.arrays.size());
+  Hdf5Writer file(name, store);
   file.write_attribute("format", format_name);
   file.write_attribute("version", format_version);
   file.write_attribute("program",
@@ -204,36 +251,41 @@ FileImage image_of(Snapshot snapshot, const std::string& name) {
   file.write_attribute("wall_seconds", snapshot.wall_seconds);
   file.write_attribute("cpu_seconds", snapshot.cpu_seconds);
   file.write_attribute("case", std::string_view(snapshot.case_text));
-  Datasets datasets = datasets_of(std::move(snapshot));
-  require_room(datasets);
-  ContentHash hash;
-  for (auto& [path, array] : datasets) {
-    hash.add(path, array);
+  file.write_attribute("content_hash", std::string_view(std::string(hash_length, '0')));
+  file.write_attribute("complete", std::int64_t{0});
+  for (auto& [path, array] : datasets_of(std::move(snapshot))) {
     file.write(path, array);
     array = {};
   }
-  file.write_attribute("content_hash", std::string_view(hash.digest()));
+  StateToFile state(file);
+  if (streams.state) streams.state(state);
+  write_parts(file, streams.particles);
+  file.open_again();
+  if (store.error() != 0) return;
+  file.write_attribute("content_hash", std::string_view(content_hash(file)));
   file.write_attribute("complete", std::int64_t{1});
-  return file.finish();
+  file.close();
+  if (store.error() == 0) store.write(store.size(), file_hash(store, store.size(), name));
 }
 
-}  // namespace
-
-std::string encode_snapshot(Snapshot snapshot, const std::string& name) {
-  const FileImage image = image_of(std::move(snapshot), name);
-  return std::string(image) + file_hash(image);
-}
-
-Snapshot decode_snapshot(std::string_view bytes, const std::string& name) {
-  const Hdf5Reader file(checked_contents(bytes, name), name);
+Snapshot read_from(std::unique_ptr<ByteStore> store, const std::string& name, SnapshotParts wanted) {
+  check_bytes(*store, name);
+  const Hdf5Reader file(std::move(store), name);
   check_format(file, name);
   Datasets datasets;
-  for (const std::string& path : file.datasets()) datasets[path] = file.read(path);
   ContentHash hash;
-  for (const auto& [path, array] : datasets) hash.add(path, array);
+  for (const std::string& path : file.datasets()) {
+    if (wanted == SnapshotParts::to_go_on && path.starts_with(scene_group)) {
+      hash.add(file, path);
+      continue;
+    }
+    const Array& array = datasets[path] = file.read(path);
+    hash.begin(path, shape_of(array));
+    hash.add(array);
+  }
   if (hash.digest() != file.text_attribute("content_hash"))
     throw IoError(fmt::format("{}: damaged: its content hash is wrong", name));
-  Snapshot snapshot = snapshot_of(std::move(datasets), name);
+  Snapshot snapshot = snapshot_of(std::move(datasets), name, wanted);
   snapshot.checkpoint.step = file.integer_attribute("step");
   snapshot.checkpoint.time = file.real_attribute("time");
   snapshot.wall_seconds = file.real_attribute("wall_seconds");
@@ -242,21 +294,35 @@ Snapshot decode_snapshot(std::string_view bytes, const std::string& name) {
   return snapshot;
 }
 
-void write_snapshot(const std::filesystem::path& path, Snapshot snapshot) {
-  const FileImage image = image_of(std::move(snapshot), path.string());
-  const std::string hash = file_hash(image);
-  PendingFile file(path, {image, hash});
-  file.check({image, hash});
+}  // namespace
+
+std::string encode_snapshot(Snapshot snapshot, const std::string& name) {
+  MemoryBytes store;
+  write_into(store, std::move(snapshot), {}, name);
+  if (store.error() != 0) throw std::bad_alloc();
+  return std::move(store.bytes());
+}
+
+Snapshot decode_snapshot(std::string_view bytes, const std::string& name) {
+  return read_from(std::make_unique<ViewedBytes>(bytes), name, SnapshotParts::all);
+}
+
+void write_snapshot(const std::filesystem::path& path, Snapshot snapshot, const SnapshotStreams& streams) {
+  PendingFile file(path);
+  FileBytes store(file.descriptor());
+  write_into(store, std::move(snapshot), streams, path.string());
+  file.end_writing(store.size() + (store.error() == 0 ? 0 : hash_length), store.error());
   file.commit();
 }
 
-Snapshot read_snapshot(const std::filesystem::path& path) {
-  return decode_snapshot(read_file(path), path.string());
+Snapshot read_snapshot(const std::filesystem::path& path, SnapshotParts wanted) {
+  return read_from(std::make_unique<FileBytes>(path), path.string(), wanted);
 }
 
 double snapshot_time(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path);
-  return Hdf5Reader(checked_contents(bytes, path.string()), path.string()).real_attribute("time");
+  auto store = std::make_unique<FileBytes>(path);
+  check_bytes(*store, path.string());
+  return Hdf5Reader(std::move(store), path.string()).real_attribute("time");
 }
 
 }  // namespace softgrain

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -41,9 +42,20 @@ std::string encode_snapshot(Snapshot snapshot, const std::string& name);
 /// altered, of another format.
 Snapshot decode_snapshot(std::string_view bytes, const std::string& name);
 
+/// What a snapshot holds besides, of which there is never more than a part in memory: particles of the scene,
+/// and arrays of the checkpoint, one after the other as a visitor sees them.
+struct SnapshotStreams {
+  ParticleParts particles{};
+  std::function<void(StateVisitor&)> state{};
+};
+
 /// Writes the file so that it appears under its name only after it has been read back and found intact.
-void write_snapshot(const std::filesystem::path& path, Snapshot snapshot);
-Snapshot read_snapshot(const std::filesystem::path& path);
+void write_snapshot(const std::filesystem::path& path, Snapshot snapshot,
+                    const SnapshotStreams& streams = {});
+
+/// All, or what a run needs to go on: without the scene, which is checked all the same.
+enum class SnapshotParts { all, to_go_on };
+Snapshot read_snapshot(const std::filesystem::path& path, SnapshotParts wanted = SnapshotParts::all);
 
 /// Its time [s], without unpacking the rest.
 double snapshot_time(const std::filesystem::path& path);

@@ -6,6 +6,7 @@
 
 #include "softgrain/core/communicator.hpp"
 #include "softgrain/core/error.hpp"
+#include "softgrain/core/shared_loop.hpp"
 #include "softgrain/experiment/estimate.hpp"
 #include "softgrain/io/run/verdict.hpp"
 #include "softgrain/observe/columns.hpp"
@@ -138,7 +139,7 @@ void RunRecorder::keep(AnySimulation& simulation, bool row, bool snapshot) {
   }
   if (snapshot) {
     add_up_ranks();
-    on_first_rank([&] { save(simulation); });
+    save(simulation);
     snapshots_due_ = shares_done(simulation, request_.the_case.output.snapshots);
     kept_at_ = wall_seconds();
   }
@@ -152,17 +153,34 @@ void RunRecorder::write_row(AnySimulation& simulation) {
   series_->write_row(last_row_);
 }
 
-void RunRecorder::save(const AnySimulation& simulation) {
+/// On all ranks: each gives the particles of its grains, part after part, also where the first one fails.
+void RunRecorder::save(AnySimulation& simulation) {
+  RankError error;
+  ParticleParts parts = simulation.particle_parts();
+  int asked = 0;
+  const auto ask = [&, rows = std::move(parts.rows)](int part) {
+    ++asked;
+    return rows(part);
+  };
+  parts.rows = ask;
+  if (communicator().rank() == 0) error.catch_from([&] { write_state(simulation, parts); });
+  while (asked < parts.count) error.catch_from([&] { ask(asked); });
+  error.raise_first();
+}
+
+void RunRecorder::write_state(AnySimulation& simulation, const ParticleParts& parts) {
   series_->sync();  // the rows before a snapshot are on the disk when it is
   const fs::path path =
       paths_.snapshot_folder() / snapshot_name(simulation.steps_done(), simulation.steps_planned());
-  write_snapshot(path, {.case_text = request_.case_text,
-                        .checkpoint = simulation.checkpoint(),
-                        .scene = simulation.scene(),
-                        .report = record_.report,
-                        .sums = sums_,
-                        .wall_seconds = wall_seconds(),
-                        .cpu_seconds = cpu_before_ + record_.ranks.cpu_all});
+  write_snapshot(path,
+                 {.case_text = request_.case_text,
+                  .checkpoint = {.step = simulation.steps_done(), .time = simulation.time(), .arrays = {}},
+                  .scene = parts.count > 0 ? simulation.scene_without_parts() : simulation.scene(),
+                  .report = record_.report,
+                  .sums = sums_,
+                  .wall_seconds = wall_seconds(),
+                  .cpu_seconds = cpu_before_ + record_.ranks.cpu_all},
+                 {.particles = parts, .state = [&](StateVisitor& visit) { simulation.visit(visit); }});
   last_snapshot_ = path;
   if (request_.the_case.output.vtk) save_scene(simulation, simulation.scene());
   log(fmt::format("snapshot {} at {:.1f} %", path.filename().string(), 100 * simulation.progress()));

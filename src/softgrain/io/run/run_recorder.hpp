@@ -73,7 +73,8 @@ class RunRecorder final : public Recorder {
   Snapshot checked_snapshot();
   int write_end(const AnySimulation& simulation);
   void write_row(AnySimulation& simulation);
-  void save(const AnySimulation& simulation);
+  void save(AnySimulation& simulation);
+  void write_state(AnySimulation& simulation, const ParticleParts& parts);
   void save_scene(const AnySimulation& simulation, const Scene& scene);
   void write_record(const AnySimulation& simulation);
 

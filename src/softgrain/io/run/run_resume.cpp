@@ -30,12 +30,14 @@ std::vector<Frame> frames_before(std::int64_t step, const RunPaths& paths) {
 
 }  // namespace
 
+/// Without the scene, unless ParaView's files begin with it.
 Snapshot RunRecorder::newest_intact_snapshot() {
+  const SnapshotParts wanted = request_.the_case.output.vtk ? SnapshotParts::all : SnapshotParts::to_go_on;
   auto files = list_snapshots(paths_);
   std::vector<fs::path> damaged;
   for (; !files.empty(); files.pop_back()) {
     try {
-      Snapshot snapshot = read_snapshot(files.back().path);
+      Snapshot snapshot = read_snapshot(files.back().path, wanted);
       last_snapshot_ = files.back().path;
       for (const fs::path& path : damaged) fs::rename(path, path.string() + ".damaged");
       return snapshot;
@@ -64,7 +66,8 @@ Snapshot RunRecorder::snapshot_to_resume() {
   Snapshot snapshot;
   on_first_rank([&] { snapshot = checked_snapshot(); });
   last_snapshot_ = told(last_snapshot_.string(), 0);
-  together(communicator().rank() != 0, [&] { snapshot = read_snapshot(last_snapshot_); });
+  together(communicator().rank() != 0,
+           [&] { snapshot = read_snapshot(last_snapshot_, SnapshotParts::to_go_on); });
   return snapshot;
 }
 

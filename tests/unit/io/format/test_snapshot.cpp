@@ -187,6 +187,73 @@ TEST_CASE("a snapshot that does not fit on the disk leaves the one before it and
   CHECK(std::distance(begin(files), end(files)) == 1);
 }
 
+namespace {
+
+/// Particles that come in parts of these numbers of rows, as an array of numbers that go up.
+ParticleParts in_parts(const std::vector<std::size_t>& rows) {
+  const std::size_t all = std::accumulate(rows.begin(), rows.end(), std::size_t{0});
+  ParticleParts parts;
+  parts.count = static_cast<int>(rows.size());
+  parts.arrays["stress"] = {.rows = all, .columns = 4};
+  parts.arrays["grain"] = {.rows = all, .columns = 1, .integers = true};
+  parts.rows = [rows](int part) {
+    const std::size_t first = std::accumulate(rows.begin(), rows.begin() + part, std::size_t{0});
+    const std::vector<double> whole = ramp(4 * (first + rows[part]));
+    Arrays arrays;
+    arrays["stress"] = {
+        4, std::vector<double>(whole.begin() + static_cast<std::ptrdiff_t>(4 * first), whole.end())};
+    arrays["grain"] = {1, std::vector<std::int64_t>(rows[part], part)};
+    return arrays;
+  };
+  return parts;
+}
+
+}  // namespace
+
+TEST_CASE("particles that come in parts are those of a snapshot that had them whole") {
+  const test::TemporaryDirectory directory;
+  const auto path = directory.path() / "s000123.h5";
+  const std::vector<std::size_t> rows{70000, 1, 0, 3, 40000};  // chunks have 32768 rows of stress
+  const std::size_t all = 110004;
+  Snapshot whole = small_snapshot();
+  whole.scene.particles = {};
+  write_snapshot(path, whole, {.particles = in_parts(rows)});
+  whole.scene.particles["stress"] = {4, ramp(4 * all)};
+  std::vector<std::int64_t> grain(70000, 0);
+  for (const auto& [part, count] : {std::pair{1, 1}, {3, 3}, {4, 40000}})
+    grain.insert(grain.end(), static_cast<std::size_t>(count), part);
+  whole.scene.particles["grain"] = {1, grain};
+  CHECK(same(read_snapshot(path), whole));
+  CHECK(Hdf5Reader(path).text_attribute("content_hash") == hash_of(whole));
+}
+
+TEST_CASE("a snapshot whose parts are not all there, or whose maker fails, leaves nothing") {
+  const test::TemporaryDirectory directory;
+  const auto path = directory.path() / "s000123.h5";
+  ParticleParts parts = in_parts({5, 5});
+  const auto rows = parts.rows;
+  parts.rows = [&](int part) { return part == 0 ? rows(part) : Arrays{}; };
+  CHECK_THROWS_AS(write_snapshot(path, small_snapshot(), {.particles = parts}), IoError);
+  parts.rows = [](int) -> Arrays { throw NumericalError("no stress"); };
+  CHECK_THROWS_WITH_AS(write_snapshot(path, small_snapshot(), {.particles = parts}), "no stress",
+                       NumericalError);
+  {
+    const test::FileSizeLimit limit(16384);
+    CHECK_THROWS_AS(write_snapshot(path, small_snapshot(), {.particles = in_parts({70000})}), IoError);
+  }
+  CHECK(std::filesystem::is_empty(directory.path()));
+}
+
+TEST_CASE("who reads what a run needs to go on checks the scene without taking it") {
+  const test::TemporaryDirectory directory;
+  const auto path = directory.path() / "s000123.h5";
+  write_snapshot(path, small_snapshot());
+  const Snapshot snapshot = read_snapshot(path, SnapshotParts::to_go_on);
+  CHECK(same(snapshot.checkpoint.arrays, small_snapshot().checkpoint.arrays));
+  CHECK(snapshot.report.sweeps == 2000);
+  CHECK(snapshot.scene.particles.empty());
+}
+
 TEST_CASE("a snapshot of a later format, or with contents that are not those of its hash, is refused") {
   const auto snapshot_of_version = [](std::int64_t version) {
     Hdf5Writer file("a");
