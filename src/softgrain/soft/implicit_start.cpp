@@ -11,10 +11,14 @@ namespace {
 /// no energy at all, but packings then rattle and take twice the time (docs/decisions/0026).
 constexpr double normals_of_fast_steps = 0.65;
 
-/// kept = of_nodes, from the node `first` on; what was kept of those before does not matter.
-void keep_from(int first, const WideVectors& of_nodes, WideVectors& kept) {
-  kept.resize(of_nodes.size());
-  std::copy(of_nodes.begin() + first, of_nodes.end(), kept.begin() + first);
+/// kept = of_nodes, from the node `first` on.
+void keep_from(std::size_t first, const WideVectors& of_nodes, WideVectors& kept) {
+  kept.assign(of_nodes.begin() + static_cast<std::ptrdiff_t>(first), of_nodes.end());
+}
+
+/// The inverse.
+void give_back(std::size_t first, const WideVectors& kept, WideVectors& of_nodes) {
+  std::copy(kept.begin(), kept.end(), of_nodes.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
 }  // namespace
@@ -37,11 +41,12 @@ void ImplicitDynamics::start(double dt) {
   const Vec<2, Wide> fall{dt * dt * options.gravity[0], dt * dt * options.gravity[1]};
   parallel_for(batches(), [&](int b) {
     GrainBatch& batch = grains.batches[b];
-    keep_from(first_here(b), batch.position, start_[b]);
-    keep_from(first_here(b), batch.velocity, velocity_start_[b]);
+    const auto first = static_cast<std::size_t>(first_here(b));
+    keep_from(first, batch.position, start_[b]);
+    keep_from(first, batch.velocity, velocity_start_[b]);
     const Vec<2, Wide> carried = (1.0 - flying_[b]) * Wide(dt) * velocity_of_cell(b);
-    for (std::size_t i = first_here(b); i < batch.position.size(); ++i) {
-      batch.position[i] += flying_[b] * Wide(dt) * flight_velocity(b, i) + carried;
+    for (std::size_t i = first; i < batch.position.size(); ++i) {
+      batch.position[i] += flying_[b] * Wide(dt) * flight_velocity(b, i - first) + carried;
       if (quasi_static(dt)) batch.position[i] += flying_[b] * fall;
     }
     keep_rigid(b);
@@ -123,8 +128,9 @@ void ImplicitDynamics::set_flying(double dt) {
 
 void ImplicitDynamics::take_back() {
   for (int b = 0; b < batches(); ++b) {
-    keep_from(first_here(b), start_[b], grains.batches[b].position);
-    keep_from(first_here(b), velocity_start_[b], grains.batches[b].velocity);
+    const auto first = static_cast<std::size_t>(first_here(b));
+    give_back(first, start_[b], grains.batches[b].position);
+    give_back(first, velocity_start_[b], grains.batches[b].velocity);
   }
   box.walls = walls_start_;
   box.cell = cell_start_;

@@ -181,7 +181,7 @@ class ImplicitDynamics {
   void flow(double dt);
   Failure finish(double dt, SoftStepReport& report);
   void balance_momentum(double dt);
-  /// v_n and what damping changes of it, of a node of a batch.
+  /// v_n and what damping changes of it, of a node of a batch, counted from first_here on.
   Vec<2, Wide> flight_velocity(std::size_t b, std::size_t i) const {
     const Vec<2, Wide>& v = velocity_start_[b][i];
     return options.damping > 0 ? v + damping_.velocity_change(start_[b][i], v) : v;
@@ -230,14 +230,15 @@ class ImplicitDynamics {
     message(std::span(of_nodes).subspan(static_cast<std::size_t>(first_known(b))));
   }
 
-  std::vector<WideVectors> start_, velocity_start_, half_solved_, force_, kept_;  // per batch
-  std::vector<WideVectors> correction_, moved_;  // of the iteration before: f, and what became of x
-  std::vector<Wide> flying_;                     // 1 for grains whose start is x_n + dt v_n, else 0
-  std::vector<Wide> pace_;                       // t_k of follow_momentum
-  std::vector<Wide> size_, halvings_;            // of the last correction and of its move, of follow_search
-  std::vector<Vec<2>> proximal_;                 // (outline vertices) c p/l on both components [N/m^2]
-  std::vector<HeldSpin> held_;                   // per batch
-  std::vector<RigidStep> rigid_;                 // per batch
+  std::vector<WideVectors> start_, velocity_start_;      // per batch, of the nodes from first_here on
+  std::vector<WideVectors> half_solved_, force_, kept_;  // per batch
+  std::vector<WideVectors> correction_, moved_;          // of the iteration before: f, and what became of x
+  std::vector<Wide> flying_;                             // 1 for grains whose start is x_n + dt v_n, else 0
+  std::vector<Wide> pace_;                               // t_k of follow_momentum
+  std::vector<Wide> size_, halvings_;  // of the last correction and of its move, of follow_search
+  std::vector<Vec<2>> proximal_;       // (outline vertices) c p/l on both components [N/m^2]
+  std::vector<HeldSpin> held_;         // per batch
+  std::vector<RigidStep> rigid_;       // per batch
   std::vector<Vec<2>> outline_increment_;
   OutlineState outline_;
   std::vector<Wall<2>> walls_start_;

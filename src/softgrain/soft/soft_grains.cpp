@@ -24,6 +24,7 @@ GrainsOf<Dim>::GrainsOf(std::vector<PlacementOf<Dim>> grains, std::vector<GrainM
   for (const GrainMaterial& material : materials_)
     require(material.density > 0, "the density must be > 0, got {} kg/m^3", material.density);
   place_.resize(grains.size());
+  batches.reserve(grains.size() / Wide::size + materials_.size());  // a vector that grows copies them
   outline_begin_.push_back(0);
   for (int g = 0; g < static_cast<int>(grains.size()); ++g) {
     const PlacementOf<Dim>& placed = grains[g];
