@@ -118,11 +118,29 @@ void PendingFile::commit() {
     sync_directory(path_.has_parent_path() ? path_.parent_path() : fs::path("."));
 }
 
-void write_file(const fs::path& path, std::string_view bytes, Survives survives) {
+namespace {
+
+template <class Pieces>
+void write_all_of(const fs::path& path, const Pieces& pieces, Survives survives) {
   PendingFile file(path, survives);
-  const bool written = write_all(file.descriptor(), bytes) == bytes.size();
-  file.end_writing(bytes.size(), written ? 0 : errno);
+  std::size_t size = 0;
+  int error = 0;
+  for (const std::string_view piece : pieces) {
+    size += piece.size();
+    if (error == 0 && write_all(file.descriptor(), piece) != piece.size()) error = errno;
+  }
+  file.end_writing(size, error);
   file.commit();
+}
+
+}  // namespace
+
+void write_file(const fs::path& path, std::string_view bytes, Survives survives) {
+  write_all_of(path, std::initializer_list{bytes}, survives);
+}
+
+void write_pieces(const fs::path& path, std::span<const std::string> pieces, Survives survives) {
+  write_all_of(path, pieces, survives);
 }
 
 AppendFile::AppendFile(fs::path path)

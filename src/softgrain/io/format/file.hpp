@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -69,6 +70,10 @@ class PendingFile {
 /// Replaces the file's contents in one piece.
 void write_file(const std::filesystem::path& path, std::string_view bytes,
                 Survives survives = Survives::power_cut);
+
+/// The same with pieces one behind the other.
+void write_pieces(const std::filesystem::path& path, std::span<const std::string> pieces,
+                  Survives survives = Survives::power_cut);
 
 /// A file that only grows, each piece by one write(): series.csv, log.txt. A piece that does not fit on the
 /// disk is taken back. Raises IoError naming the path and the bytes needed.

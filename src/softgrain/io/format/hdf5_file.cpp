@@ -178,6 +178,13 @@ Array Hdf5File::read(const std::string& path) const {
   return {dataset.columns(), dataset.read<double>()};
 }
 
+Array Hdf5File::read_rows(const std::string& path, std::size_t first, std::size_t count) const {
+  const Dataset dataset(file_, path, name_, size_);
+  if (dataset.type_class() == H5T_INTEGER)
+    return {dataset.columns(), dataset.read<std::int64_t>(first, count)};
+  return {dataset.columns(), dataset.read<double>(first, count)};
+}
+
 void Hdf5File::read_in_blocks(const std::string& path,
                               const std::function<void(const Array& rows)>& visit) const {
   const Dataset dataset(file_, path, name_, size_);

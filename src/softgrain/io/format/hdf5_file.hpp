@@ -29,6 +29,8 @@ class Hdf5File {
   /// Of any dataset of integers or floats; the first dimension counts rows, the others make up the columns.
   ArrayShape shape(const std::string& path) const;
   Array read(const std::string& path) const;
+  /// Its rows first .. first + count - 1.
+  Array read_rows(const std::string& path, std::size_t first, std::size_t count) const;
   /// visit(rows) for all rows one after the other, as many at once as a chunk has.
   void read_in_blocks(const std::string& path, const std::function<void(const Array& rows)>& visit) const;
   /// All, converted, flat and row-major.

@@ -1,8 +1,5 @@
 #include "softgrain/io/format/snapshot.hpp"
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
 #include <algorithm>
 #include <array>
 #include <map>
@@ -12,6 +9,8 @@
 #include "softgrain/core/version.hpp"
 #include "softgrain/io/format/file.hpp"
 #include "softgrain/io/format/hdf5_file.hpp"
+#include "softgrain/io/format/snapshot_groups.hpp"
+#include "softgrain/io/format/snapshot_hashes.hpp"
 
 namespace softgrain {
 
@@ -22,70 +21,6 @@ constexpr std::int64_t format_version = 1;
 
 /// Absolute path in the file -> dataset.
 using Datasets = std::map<std::string, Array>;
-
-const std::string checkpoint_group = "/checkpoint/", scene_group = "/scene/",
-                  particle_group = "/scene/particles/", contact_group = "/scene/contacts/",
-                  outline_group = "/scene/outlines/", surface_group = "/scene/surface/",
-                  walls_path = "/scene/walls", cell_path = "/scene/cell", run_group = "/run/";
-
-class Hash {
- public:
-  Hash() { XXH3_128bits_reset(&state_); }
-  void add(const void* data, std::size_t size) { XXH3_128bits_update(&state_, data, size); }
-  void add(std::uint64_t number) { add(&number, sizeof number); }
-  std::string digest() const {
-    const XXH128_hash_t hash = XXH3_128bits_digest(&state_);
-    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
-  }
-
- private:
-  XXH3_state_t state_;
-};
-
-/// XXH3-128 of the first bytes of a file; it ends the file, so that a flipped bit is found wherever it lies.
-std::string file_hash(ByteStore& file, std::size_t size, const std::string& name) {
-  constexpr std::size_t at_once = 1 << 20;
-  Hash hash;
-  std::string bytes;
-  for (std::size_t begin = 0; begin < size; begin += bytes.size()) {
-    bytes.resize(std::min(at_once, size - begin));
-    if (!file.read(begin, bytes)) throw IoError(fmt::format("{}: the disk does not give it back", name));
-    hash.add(bytes.data(), bytes.size());
-  }
-  return hash.digest();
-}
-
-constexpr std::size_t hash_length = 32;
-
-/// XXH3-128 over the datasets in the order of their paths: path, 0, 'f' or 'i', rows, columns, values.
-class ContentHash {
- public:
-  void begin(const std::string& path, const ArrayShape& shape) {
-    hash_.add(path.c_str(), path.size() + 1);
-    hash_.add(shape.integers ? "i" : "f", 1);
-    hash_.add(shape.rows);
-    hash_.add(shape.columns);
-  }
-  void add(const Array& rows) {
-    std::visit([this](const auto& values) { hash_.add(values.data(), values.size() * sizeof values[0]); },
-               rows.values);
-  }
-  /// Of a dataset, of which a chunk at a time is in memory.
-  void add(const Hdf5File& file, const std::string& path) {
-    begin(path, file.shape(path));
-    file.read_in_blocks(path, [this](const Array& rows) { add(rows); });
-  }
-  std::string digest() const { return hash_.digest(); }
-
- private:
-  Hash hash_;
-};
-
-std::string content_hash(const Hdf5File& file) {
-  ContentHash hash;
-  for (const std::string& path : file.datasets()) hash.add(file, path);
-  return hash.digest();
-}
 
 /// Of these 0.1.0 before its release knew nothing.
 constexpr std::array<std::string_view, 3> later_totals{"residual_limit", "energy_error", "energy_scale"};
@@ -160,18 +95,6 @@ Snapshot snapshot_of(Datasets datasets, const std::string& name, SnapshotParts w
     throw IoError(fmt::format("{}: a dataset has the wrong type", name));
   }
   return snapshot;
-}
-
-/// Raises IoError unless it is an HDF5 file with its hash behind it. The library must not see damaged bytes:
-/// it may crash on them.
-void check_bytes(ByteStore& file, const std::string& name) {
-  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
-  std::string begin(signature.size(), '\0'), hash(hash_length, '\0');
-  if (!file.read(0, begin) || begin != signature)
-    throw IoError(fmt::format("{}: not a snapshot: no HDF5 file, or one without its beginning", name));
-  const std::size_t size = file.size() - std::min(file.size(), hash_length);
-  if (!file.read(size, hash) || hash != file_hash(file, size, name))
-    throw IoError(fmt::format("{}: not a snapshot, or a damaged one: the hash at its end is wrong", name));
 }
 
 void check_format(const Hdf5Reader& file, const std::string& name) {

@@ -3,89 +3,39 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cfloat>
-#include <cmath>
-#include <cstring>
 #include <numeric>
 #include <string_view>
 #include <unordered_map>
 
 #include "softgrain/core/error.hpp"
-#include "softgrain/core/parallel.hpp"
-#include "softgrain/io/format/compress.hpp"
 #include "softgrain/io/format/file.hpp"
+#include "softgrain/io/format/vtp_text.hpp"
 
 namespace softgrain {
 
 namespace {
 
-constexpr int fastest_compression = 1;
-constexpr std::size_t block_size = 1 << 20;
-
-float as_float(double value) {
-  const auto narrow = static_cast<float>(value);
-  return std::fabs(narrow) < FLT_MIN ? 0.0F : narrow;
+/// Rows first .. first + count - 1.
+Array rows_of(const Array& array, std::size_t first, std::size_t count) {
+  return std::visit(
+      [&](const auto& values) -> Array {
+        const auto begin = values.begin() + static_cast<std::ptrdiff_t>(array.columns * first),
+                   end = begin + static_cast<std::ptrdiff_t>(array.columns * count);
+        return {array.columns, std::vector(begin, end)};
+      },
+      array.values);
 }
 
-template <class T>
-std::string raw_bytes(const std::vector<T>& values) {
-  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+void add_array(VtpText& text, const std::string& name, const Array& array) {
+  text.array(name, shape_of(array),
+             [&](std::size_t first, std::size_t count) { return rows_of(array, first, count); });
 }
 
-/// VTK's compressed array: number of blocks, size of a block, of a last partial one, of each when compressed;
-/// then the blocks.
-std::string compressed_blocks(std::string_view raw) {
-  const std::size_t count = (raw.size() + block_size - 1) / block_size;
-  std::vector<std::string> block(count);
-  parallel_for(static_cast<int>(count), [&](int k) {
-    block[k] = compressed(raw.substr(k * block_size, block_size), Container::zlib, fastest_compression);
-  });
-  std::vector<std::uint64_t> sizes{count, block_size, raw.size() % block_size};
-  for (const std::string& packed : block) sizes.push_back(packed.size());
-  std::string blocks = raw_bytes(sizes);
-  for (const std::string& packed : block) blocks += packed;
-  return blocks;
-}
-
-/// The XML of a .vtp file and, behind it, its binary blocks.
-class VtpText {
- public:
-  void line(std::string_view text) { xml_ += fmt::format("{}\n", text); }
-
-  void array(const std::string& name, const Array& array) {
-    if (const auto* reals = std::get_if<std::vector<double>>(&array.values)) {
-      const std::size_t columns = array.columns == 2 ? 3 : array.columns;
-      std::vector<float> floats;
-      floats.reserve(reals->size() / array.columns * columns);
-      for (std::size_t k = 0; k < reals->size(); ++k) {
-        floats.push_back(as_float((*reals)[k]));
-        if (array.columns == 2 && k % 2 == 1) floats.push_back(0);
-      }
-      block("Float32", name, columns, raw_bytes(floats));
-    } else {
-      block("Int64", name, array.columns, raw_bytes(std::get<std::vector<std::int64_t>>(array.values)));
-    }
-  }
-
-  std::string finish() const {
-    return xml_ + "<AppendedData encoding=\"raw\">\n_" + blocks_ + "\n</AppendedData>\n</VTKFile>\n";
-  }
-
- private:
-  void block(std::string_view type, const std::string& name, std::size_t columns, const std::string& raw) {
-    line(fmt::format(
-        R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)", type,
-        name, columns, blocks_.size()));
-    blocks_ += compressed_blocks(raw);
-  }
-
-  std::string xml_, blocks_;
-};
-
-Array integers(std::size_t count, std::int64_t first, std::int64_t stride) {
+/// first, first + stride, ...
+Array integers(std::size_t first, std::size_t count, std::int64_t begin, std::int64_t stride) {
   std::vector<std::int64_t> values(count);
-  for (std::size_t k = 0; k < count; ++k) values[k] = first + stride * static_cast<std::int64_t>(k);
-  return {1, values};
+  for (std::size_t k = 0; k < count; ++k) values[k] = begin + stride * static_cast<std::int64_t>(first + k);
+  return {1, std::move(values)};
 }
 
 /// Rows of an array, in the order of `rows`.
@@ -102,36 +52,44 @@ Array select_rows(const Array& array, const std::vector<std::size_t>& rows) {
   return selected;
 }
 
-std::vector<double> positions_of(const Scene& scene) {
-  const auto at = scene.particles.find("position");
-  return at == scene.particles.end() ? std::vector<double>{}
-                                     : std::get<std::vector<double>>(at->second.values);
+std::size_t columns_of(const ParticleRows& particles) {
+  const auto at = particles.arrays.find("position");
+  return at == particles.arrays.end() ? 2 : at->second.columns;
 }
 
-std::size_t columns_of(const Scene& scene) {
-  const auto at = scene.particles.find("position");
-  return at == scene.particles.end() ? 2 : at->second.columns;
+std::size_t count_of(const ParticleRows& particles) {
+  const auto at = particles.arrays.find("position");
+  return at == particles.arrays.end() ? 0 : at->second.rows;
+}
+
+template <class T>
+std::vector<T> numbers_of(const ParticleRows& particles, const std::string& name, std::size_t first,
+                          std::size_t count) {
+  return std::get<std::vector<T>>(particles.rows(name, first, count).values);
 }
 
 /// Where lines between bodies end: the particles themselves, or each grain's centre: the mean of its material
 /// points, weighted by their areas.
-std::vector<double> body_positions(const Scene& scene) {
-  std::vector<double> x = positions_of(scene);
-  if (!scene.contacts.contains("position")) return x;
-  const auto& grain = std::get<std::vector<std::int64_t>>(scene.particles.at("grain").values);
-  const auto& radius = std::get<std::vector<double>>(scene.particles.at("radius").values);
-  if (grain.empty()) return {};
-  const auto [least, most] = std::minmax_element(grain.begin(), grain.end());
-  const std::size_t columns = columns_of(scene);
-  if (columns * grain.size() != x.size() || radius.size() != grain.size() || *least < 0 ||
-      *most >= static_cast<std::int64_t>(grain.size()))
-    throw IoError("the scene's particles belong to no grains");
-  const std::int64_t grains = *most + 1;
-  std::vector<double> centre(columns * grains, 0), weight(grains, 0);
-  for (std::size_t i = 0; i < grain.size(); ++i) {
-    const double area = radius[i] * radius[i];
-    weight[grain[i]] += area;
-    for (std::size_t d = 0; d < columns; ++d) centre[columns * grain[i] + d] += area * x[columns * i + d];
+std::vector<double> body_positions(const Scene& scene, const ParticleRows& particles) {
+  const std::size_t rows = count_of(particles), columns = columns_of(particles);
+  if (!scene.contacts.contains("position"))
+    return rows == 0 ? std::vector<double>{} : numbers_of<double>(particles, "position", 0, rows);
+  std::vector<double> centre, weight;
+  for (const char* name : {"grain", "radius"})
+    if (particles.arrays.at(name).rows != rows) throw IoError("the scene's particles belong to no grains");
+  for (std::size_t first = 0; first < rows; first += VtpText::rows_at_once) {
+    const std::size_t count = std::min(VtpText::rows_at_once, rows - first);
+    const auto grain = numbers_of<std::int64_t>(particles, "grain", first, count);
+    const auto radius = numbers_of<double>(particles, "radius", first, count),
+               x = numbers_of<double>(particles, "position", first, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto g = static_cast<std::size_t>(grain[i]);
+      if (grain[i] < 0 || g >= rows) throw IoError("the scene's particles belong to no grains");
+      if (g >= weight.size()) weight.resize(g + 1), centre.resize(columns * (g + 1));
+      const double area = radius[i] * radius[i];
+      weight[g] += area;
+      for (std::size_t d = 0; d < columns; ++d) centre[columns * g + d] += area * x[columns * i + d];
+    }
   }
   for (std::size_t k = 0; k < centre.size(); ++k) centre[k] /= weight[k / columns];
   return centre;
@@ -139,26 +97,26 @@ std::vector<double> body_positions(const Scene& scene) {
 
 }  // namespace
 
-PolyData particles_of(const Scene& scene) {
-  PolyData data;
-  data.positions = positions_of(scene);
-  data.columns = columns_of(scene);
-  data.point_data = scene.particles;
-  data.point_data.erase("position");
-  return data;
+ParticleRows rows_of_particles(const Scene& scene) {
+  ParticleRows particles;
+  for (const auto& [name, array] : scene.particles) particles.arrays[name] = shape_of(array);
+  particles.rows = [&scene](const std::string& name, std::size_t first, std::size_t count) {
+    return rows_of(scene.particles.at(name), first, count);
+  };
+  return particles;
 }
 
-PolyData contacts_of(const Scene& scene) {
+PolyData contacts_of(const Scene& scene, const ParticleRows& particles) {
   PolyData data;
   data.has_lines = true;
-  data.columns = columns_of(scene);
+  data.columns = columns_of(particles);
   const std::size_t columns = data.columns;
   const auto pair = scene.contacts.find("pair"), place = scene.contacts.find("position");
   if (pair == scene.contacts.end()) return data;
   const auto* places =
       place == scene.contacts.end() ? nullptr : &std::get<std::vector<double>>(place->second.values);
   const auto& ends = std::get<std::vector<std::int64_t>>(pair->second.values);
-  const std::vector<double> positions = body_positions(scene);
+  const std::vector<double> positions = body_positions(scene, particles);
   const auto bodies = static_cast<std::int64_t>(positions.size() / columns);
   const auto is_body = [&](std::int64_t end) { return end >= 0 && end < bodies; };
   std::unordered_map<std::int64_t, std::int64_t> number;  // of the bodies that lines end at
@@ -213,10 +171,19 @@ PolyData surfaces_of(const Scene& scene) {
   return data;
 }
 
-std::string encode_vtp(const PolyData& data) {
-  const std::size_t points = data.positions.size() / data.columns;
-  const std::size_t lines = data.lines.size() / 2, quads = data.quads.size() / 4;
-  const bool are_cells = data.has_lines || !data.quads.empty();
+namespace {
+
+/// Points, each of which is a vertex where there are no cells.
+struct Piece {
+  std::size_t points = 0, lines = 0, quads = 0;
+  bool has_cells = false;
+};
+
+/// of_points(text), of_cells(text), position(text), cells(text) add the arrays of each.
+template <class OfPoints, class OfCells, class Position, class Cells>
+std::vector<std::string> vtp_pieces(const Piece& piece, const OfPoints& of_points, const OfCells& of_cells,
+                                    const Position& position, std::string_view name_of_cells,
+                                    const Cells& cells) {
   VtpText text;
   text.line(R"(<?xml version="1.0"?>)");
   text.line(R"(<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" )"
@@ -224,34 +191,97 @@ std::string encode_vtp(const PolyData& data) {
   text.line("<PolyData>");
   text.line(fmt::format(R"(<Piece NumberOfPoints="{}" NumberOfVerts="{}" NumberOfLines="{}" )"
                         R"(NumberOfStrips="0" NumberOfPolys="{}">)",
-                        points, are_cells ? 0 : points, lines, quads));
+                        piece.points, piece.has_cells ? 0 : piece.points, piece.lines, piece.quads));
   text.line("<PointData>");
-  for (const auto& [name, array] : data.point_data) text.array(name, array);
+  of_points(text);
   text.line("</PointData>\n<CellData>");
-  for (const auto& [name, array] : data.cell_data) text.array(name, array);
+  of_cells(text);
   text.line("</CellData>\n<Points>");
-  text.array("position", {data.columns, data.positions});
+  position(text);
   text.line("</Points>");
-  const std::string_view cells = data.has_lines ? "Lines" : are_cells ? "Polys" : "Verts";
-  text.line(fmt::format("<{}>", cells));
-  text.array("connectivity", data.has_lines ? Array{1, data.lines}
-                             : are_cells    ? Array{1, data.quads}
-                                            : integers(points, 0, 1));
-  text.array("offsets", data.has_lines ? integers(lines, 2, 2)
-                        : are_cells    ? integers(quads, 4, 4)
-                                       : integers(points, 1, 1));
-  text.line(fmt::format("</{}>\n</Piece>\n</PolyData>", cells));
+  text.line(fmt::format("<{}>", name_of_cells));
+  cells(text);
+  text.line(fmt::format("</{}>\n</Piece>\n</PolyData>", name_of_cells));
   return text.finish();
 }
 
-void write_scene(const std::filesystem::path& folder, const std::string& label, const Scene& scene) {
-  write_file(folder / fmt::format("particles_{}.vtp", label), encode_vtp(particles_of(scene)),
-             Survives::kill);
-  write_file(folder / fmt::format("contacts_{}.vtp", label), encode_vtp(contacts_of(scene)), Survives::kill);
-  write_file(folder / fmt::format("walls_{}.vtp", label), encode_vtp(walls_of(scene)), Survives::kill);
-  if (!scene.surface.empty())
-    write_file(folder / fmt::format("surfaces_{}.vtp", label), encode_vtp(surfaces_of(scene)),
-               Survives::kill);
+/// begin, begin + stride, ..., `count` numbers.
+void add_integers(VtpText& text, const char* name, std::size_t count, std::int64_t begin,
+                  std::int64_t stride) {
+  text.array(name, {.rows = count, .columns = 1, .integers = true},
+             [&](std::size_t first, std::size_t rows) { return integers(first, rows, begin, stride); });
+}
+
+void add_vertices(VtpText& text, std::size_t points) {
+  add_integers(text, "connectivity", points, 0, 1);
+  add_integers(text, "offsets", points, 1, 1);
+}
+
+std::vector<std::string> particle_pieces(const ParticleRows& particles) {
+  const auto add = [&](VtpText& text, const std::string& name) {
+    text.array(name, particles.arrays.at(name),
+               [&](std::size_t first, std::size_t count) { return particles.rows(name, first, count); });
+  };
+  const std::size_t points = count_of(particles);
+  return vtp_pieces(
+      {.points = points},
+      [&](VtpText& text) {
+        for (const auto& [name, shape] : particles.arrays)
+          if (name != "position") add(text, name);
+      },
+      [](VtpText&) {},
+      [&](VtpText& text) {
+        if (particles.arrays.contains("position")) return add(text, "position");
+        add_array(text, "position", {2, std::vector<double>{}});
+      },
+      "Verts", [&](VtpText& text) { add_vertices(text, points); });
+}
+
+std::vector<std::string> pieces_of(const PolyData& data) {
+  const std::size_t points = data.positions.size() / data.columns;
+  const std::size_t lines = data.lines.size() / 2, quads = data.quads.size() / 4;
+  const bool are_cells = data.has_lines || !data.quads.empty();
+  const auto add_all = [](const std::map<std::string, Array>& arrays) {
+    return [&arrays](VtpText& text) {
+      for (const auto& [name, array] : arrays) add_array(text, name, array);
+    };
+  };
+  return vtp_pieces(
+      {.points = points, .lines = lines, .quads = quads, .has_cells = are_cells}, add_all(data.point_data),
+      add_all(data.cell_data),
+      [&](VtpText& text) {
+        add_array(text, "position", {data.columns, data.positions});
+      },
+      data.has_lines ? "Lines"
+      : are_cells    ? "Polys"
+                     : "Verts",
+      [&](VtpText& text) {
+        if (!are_cells) return add_vertices(text, points);
+        add_array(text, "connectivity", {1, data.has_lines ? data.lines : data.quads});
+        data.has_lines ? add_integers(text, "offsets", lines, 2, 2)
+                       : add_integers(text, "offsets", quads, 4, 4);
+      });
+}
+
+std::string joined(const std::vector<std::string>& pieces) {
+  return std::accumulate(pieces.begin(), pieces.end(), std::string());
+}
+
+}  // namespace
+
+std::string encode_vtp(const PolyData& data) { return joined(pieces_of(data)); }
+
+std::string encode_vtp(const ParticleRows& particles) { return joined(particle_pieces(particles)); }
+
+void write_scene(const std::filesystem::path& folder, const std::string& label, const Scene& scene,
+                 const ParticleRows& particles) {
+  const auto write = [&](const char* part, const std::vector<std::string>& pieces) {
+    write_pieces(folder / fmt::format("{}_{}.vtp", part, label), pieces, Survives::kill);
+  };
+  write("particles", particle_pieces(particles));
+  write("contacts", pieces_of(contacts_of(scene, particles)));
+  write("walls", pieces_of(walls_of(scene)));
+  if (!scene.surface.empty()) write("surfaces", pieces_of(surfaces_of(scene)));
 }
 
 std::string pvd_text(const std::vector<Frame>& frames, const std::string& folder, bool in_space) {

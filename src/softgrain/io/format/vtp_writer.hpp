@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,11 +22,18 @@ struct PolyData {
   std::map<std::string, Array> cell_data;   ///< one row per cell
 };
 
-PolyData particles_of(const Scene& scene);
+/// Particles that lie elsewhere, as in a snapshot: those of a large packing are nowhere whole.
+struct ParticleRows {
+  ArrayShapes arrays;
+  std::function<Array(const std::string& name, std::size_t first, std::size_t count)> rows;
+};
+/// Those of a scene, to which it keeps a reference.
+ParticleRows rows_of_particles(const Scene& scene);
+
 /// A line between the particles of each contact; contacts with something else than a particle (an index
 /// outside) are left out. Of contacts between grains a line between the centres, and from the centre to the
 /// place of contact with a wall.
-PolyData contacts_of(const Scene& scene);
+PolyData contacts_of(const Scene& scene, const ParticleRows& particles);
 PolyData walls_of(const Scene& scene);
 /// The outlines of grains in space, as quads.
 PolyData surfaces_of(const Scene& scene);
@@ -33,9 +41,11 @@ PolyData surfaces_of(const Scene& scene);
 /// The bytes of a .vtp file: appended raw blocks, zlib, 64 bit headers, reals as float32 with denormal
 /// numbers flushed to zero. Two columns become three (z = 0), as ParaView's vectors.
 std::string encode_vtp(const PolyData& data);
+std::string encode_vtp(const ParticleRows& particles);
 
 /// Writes particles_, contacts_ and walls_`label`.vtp into the folder; in space surfaces_ too.
-void write_scene(const std::filesystem::path& folder, const std::string& label, const Scene& scene);
+void write_scene(const std::filesystem::path& folder, const std::string& label, const Scene& scene,
+                 const ParticleRows& particles);
 
 /// One time of the collection that ParaView opens.
 struct Frame {

@@ -8,6 +8,7 @@
 #include "softgrain/core/error.hpp"
 #include "softgrain/core/shared_loop.hpp"
 #include "softgrain/experiment/estimate.hpp"
+#include "softgrain/io/format/stored_scene.hpp"
 #include "softgrain/io/run/verdict.hpp"
 #include "softgrain/observe/columns.hpp"
 
@@ -182,14 +183,16 @@ void RunRecorder::write_state(AnySimulation& simulation, const ParticleParts& pa
                   .cpu_seconds = cpu_before_ + record_.ranks.cpu_all},
                  {.particles = parts, .state = [&](StateVisitor& visit) { simulation.visit(visit); }});
   last_snapshot_ = path;
-  if (request_.the_case.output.vtk) save_scene(simulation, simulation.scene());
+  if (request_.the_case.output.vtk) save_scene(simulation);
   log(fmt::format("snapshot {} at {:.1f} %", path.filename().string(), 100 * simulation.progress()));
   write_record(simulation);
 }
 
-void RunRecorder::save_scene(const AnySimulation& simulation, const Scene& scene) {
+/// Of the last snapshot.
+void RunRecorder::save_scene(const AnySimulation& simulation) {
   const std::string label = snapshot_label(last_snapshot_);
-  write_scene(paths_.vtk_folder(), label, scene);
+  const StoredScene stored(last_snapshot_);
+  write_scene(paths_.vtk_folder(), label, stored.scene(), stored.particles());
   frames_.push_back({simulation.time(), label});
   write_file(paths_.collection_file(),
              pvd_text(frames_, paths_.vtk_folder().filename().string(), is_in_space(request_.the_case)),

@@ -75,7 +75,7 @@ class RunRecorder final : public Recorder {
   void write_row(AnySimulation& simulation);
   void save(AnySimulation& simulation);
   void write_state(AnySimulation& simulation, const ParticleParts& parts);
-  void save_scene(const AnySimulation& simulation, const Scene& scene);
+  void save_scene(const AnySimulation& simulation);
   void write_record(const AnySimulation& simulation);
 
   RunPaths paths_;

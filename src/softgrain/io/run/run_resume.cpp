@@ -30,14 +30,13 @@ std::vector<Frame> frames_before(std::int64_t step, const RunPaths& paths) {
 
 }  // namespace
 
-/// Without the scene, unless ParaView's files begin with it.
+/// Without its scene.
 Snapshot RunRecorder::newest_intact_snapshot() {
-  const SnapshotParts wanted = request_.the_case.output.vtk ? SnapshotParts::all : SnapshotParts::to_go_on;
   auto files = list_snapshots(paths_);
   std::vector<fs::path> damaged;
   for (; !files.empty(); files.pop_back()) {
     try {
-      Snapshot snapshot = read_snapshot(files.back().path, wanted);
+      Snapshot snapshot = read_snapshot(files.back().path, SnapshotParts::to_go_on);
       last_snapshot_ = files.back().path;
       for (const fs::path& path : damaged) fs::rename(path, path.string() + ".damaged");
       return snapshot;
@@ -109,7 +108,7 @@ RunReport RunRecorder::resume(AnySimulation& simulation) {
     if (request_.case_before != request_.case_text) write_file(paths_.case_file(), request_.case_text);
     if (request_.the_case.output.vtk) {
       fs::create_directories(paths_.vtk_folder());
-      save_scene(simulation, snapshot.scene);
+      save_scene(simulation);
     }
     write_record(simulation);
   });

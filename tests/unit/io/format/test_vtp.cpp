@@ -59,7 +59,8 @@ Scene three_disks() {
 }  // namespace
 
 TEST_CASE("ParaView's particles are points in space with their fields as float32, denormals flushed") {
-  const std::string file = encode_vtp(particles_of(three_disks()));
+  const Scene disks = three_disks();
+  const std::string file = encode_vtp(rows_of_particles(disks));
   CHECK(file.find("NumberOfPoints=\"3\" NumberOfVerts=\"3\" NumberOfLines=\"0\"") != std::string::npos);
   CHECK(file.find("header_type=\"UInt64\"") != std::string::npos);
   CHECK(vtp_array<float>(file, "position") == std::vector<float>{0, 0, 0, 2, 0.5F, 0, 4, 0, 0});
@@ -75,7 +76,7 @@ TEST_CASE("ParaView's arrays of more than a block come back whole") {
   for (int k = 0; k < 400000; ++k) x.push_back(k % 1000 / 7.0);
   Scene scene;
   scene.particles["position"] = {2, x};
-  const std::vector<float> position = vtp_array<float>(encode_vtp(particles_of(scene)), "position");
+  const std::vector<float> position = vtp_array<float>(encode_vtp(rows_of_particles(scene)), "position");
   REQUIRE(position.size() == 600000);
   for (int k = 0; k < 200000; ++k)
     REQUIRE((position[3 * k] == static_cast<float>(x[2 * k]) && position[3 * k + 2] == 0));
@@ -85,10 +86,11 @@ TEST_CASE("ParaView's contacts are lines between particles with their force, wit
   Scene scene = three_disks();
   scene.contacts["pair"] = {2, std::vector<std::int64_t>{2, 1}};
   scene.contacts["force"] = {1, std::vector<double>{10}};
-  CHECK(vtp_array<float>(encode_vtp(contacts_of(scene)), "position") ==
+  CHECK(vtp_array<float>(encode_vtp(contacts_of(scene, rows_of_particles(scene))), "position") ==
         std::vector<float>{4, 0, 0, 2, 0.5F, 0});
 
-  const std::string file = encode_vtp(contacts_of(three_disks()));
+  const Scene disks = three_disks();
+  const std::string file = encode_vtp(contacts_of(disks, rows_of_particles(disks)));
   CHECK(file.find("NumberOfPoints=\"3\" NumberOfVerts=\"0\" NumberOfLines=\"2\"") != std::string::npos);
   CHECK(vtp_array<std::int64_t>(file, "connectivity") == std::vector<std::int64_t>{0, 1, 2, 1});
   CHECK(vtp_array<std::int64_t>(file, "offsets") == std::vector<std::int64_t>{2, 4});
@@ -103,7 +105,7 @@ TEST_CASE("ParaView's contacts between grains join their centres, or a centre an
   scene.contacts["pair"] = {2, std::vector<std::int64_t>{0, 1, 0, 3}};  // 2 and 3 are walls
   scene.contacts["force"] = {1, std::vector<double>{10, 20}};
   scene.contacts["position"] = {2, std::vector<double>{5, 5, -1, 0.5}};
-  const std::string file = encode_vtp(contacts_of(scene));
+  const std::string file = encode_vtp(contacts_of(scene, rows_of_particles(scene)));
   CHECK(vtp_array<float>(file, "position") == std::vector<float>{2.5F, 0.5F, 0, 10, 10, 0, -1, 0.5F, 0});
   CHECK(vtp_array<std::int64_t>(file, "connectivity") == std::vector<std::int64_t>{0, 1, 0, 2});
   CHECK(vtp_array<float>(file, "force") == std::vector<float>{10, 20});
@@ -113,7 +115,7 @@ TEST_CASE("ParaView's walls are one line each, and a scene without contacts is n
   const std::string walls = encode_vtp(walls_of(three_disks()));
   CHECK(vtp_array<float>(walls, "position") == std::vector<float>{-1, 0, 0, 1, 0, 0, -1, 9, 0, 1, 9, 0});
   CHECK(vtp_array<std::int64_t>(walls, "connectivity") == std::vector<std::int64_t>{0, 1, 2, 3});
-  CHECK(vtp_array<float>(encode_vtp(contacts_of({})), "position").empty());
+  CHECK(vtp_array<float>(encode_vtp(contacts_of({}, {})), "position").empty());
 }
 
 TEST_CASE("the collection names every part of every frame with its time") {
