@@ -107,7 +107,7 @@ void print_estimate(const Case& the_case, const Estimate& estimate) {
 
 void print_estimate_on_ranks(const Case& the_case, const Estimate& alone, int ranks) {
   const RanksEstimate together = estimate_on_ranks(the_case, alone, ranks);
-  fmt::print(stderr, "about {} on {} ranks of softgrain-mpi, by a model, with {:.0f} MB in each\n",
+  fmt::print(stderr, "about {} on {} ranks of softgrain-mpi, by a model, with {:.0f} MB in the first\n",
              duration_text(3600 * together.hours), ranks, together.memory / 1e6);
   if (together.useful < ranks)
     fmt::print(stderr, "note: only {} of the ranks have work: {}\n", together.useful,

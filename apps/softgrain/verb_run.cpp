@@ -107,7 +107,8 @@ int threads_of_rank() {
 /// Ranks on one host share its memory.
 void require_memory_and_disk(const Case& the_case, const RunPaths& paths) {
   Estimate needed = estimate(the_case);
-  needed.memory *= communicator().ranks_on_host();
+  const double on_all = needed.memory - needed.shared_memory;
+  needed.memory = needed.shared_memory + communicator().ranks_on_host() * on_all;
   require_resources(needed, available_resources(paths.root));
 }
 

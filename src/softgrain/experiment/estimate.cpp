@@ -217,15 +217,36 @@ double disk(const Case& c, const Estimate& e) {
 }
 
 /// Of the program alone [bytes].
-constexpr double program_memory = 35e6;
+constexpr double program_memory = 30e6;
 
-/// Peak of a whole run [bytes], as measured: the program, its state, and a snapshot while it is written. A
-/// batch of 8 elastic grains takes the same when it is not full.
-double memory(const Case& c, const Estimate& e) {
-  if (is_bonded(c)) return program_memory + 2300 * e.particles + 7000 * grains(c);
-  if (is_in_space(c)) return program_memory + 100 * e.particles + 1e6 * c.mpm.cells;
-  const double in_batches = std::ceil(grains(c) / 8) * 8 * e.particles / grains(c);
-  return program_memory + 550 * e.particles + 350 * in_batches;
+/// Of a point of implicit elastic grains in the plane [bytes]: factors, in single precision where steps are
+/// short, and what iterations keep.
+double implicit_bytes_of_point(const Case& c) {
+  constexpr double short_steps = 30;  // in times of a wave through a cell
+  const double wave_time = smallest_radius(c) / c.mpm.cells / wave_speed(c);
+  return first_time_step(c) < short_steps * wave_time ? 140 + 2.8 * c.mpm.cells : 185 + 8.1 * c.mpm.cells;
+}
+
+/// Of a point [bytes]: while the page is made, which reads whole snapshots; or a file for ParaView; or a part
+/// of a snapshot.
+double bytes_of_files(const Case& c) { return c.output.report ? 170 : c.output.vtk ? 55 : 4; }
+
+/// Sets the peak of a whole run, as measured: the program, its state, and a file while it is written or read.
+/// A batch of 8 elastic grains takes the same when it is not full.
+void set_memory(const Case& c, Estimate& e) {
+  e.memory = program_memory;
+  if (is_bonded(c)) {
+    e.shared_memory = 550 * e.particles;
+    e.memory += 2300 * e.particles + 7000 * grains(c);
+  } else if (is_in_space(c)) {
+    e.memory += 100 * e.particles + 1e6 * c.mpm.cells;
+  } else if (is_lattice(c)) {
+    e.memory += 500 * e.particles;
+  } else {
+    const double in_batches = std::ceil(grains(c) / 8) * 8 * e.particles / grains(c);
+    e.shared_memory = is_implicit(c) && !is_rigid(c) ? implicit_bytes_of_point(c) * in_batches : 0;
+    e.memory += e.shared_memory + (remembers(c) ? 69 : 14) * in_batches + bytes_of_files(c) * e.particles;
+  }
 }
 
 }  // namespace
@@ -251,7 +272,7 @@ Estimate estimate_in(double steps, const Case& the_case) {
   result.contacts =
       bpm ? contacts_of_primary * result.particles : grains(the_case) * 3.3 * the_case.mpm.cells;
   result.steps = steps;
-  result.memory = memory(the_case, result);
+  set_memory(the_case, result);
   result.hours =
       (result.steps * seconds_of_step(the_case, result) + seconds_of_rows(the_case, result)) * second;
   result.disk = disk(the_case, result);
@@ -270,6 +291,7 @@ Estimate estimate(const Case& the_case) {
   both.particles += more.particles;
   both.contacts += more.contacts;
   both.memory += more.memory - program_memory;
+  both.shared_memory += more.shared_memory;
   both.hours += more.hours;
   both.disk += more.disk;
   return both;

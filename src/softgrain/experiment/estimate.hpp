@@ -11,10 +11,10 @@ struct Estimate {
   double contacts = 0;   ///< bpm: 2.2 per primary, 4.2 in space, a dense packing has about 2 and 3; mpm: half
                          ///< of the outlines' vertices
   double steps = 0;      ///< of the loading path; preparing the sample comes on top
-  double memory =
-      0;             ///< [bytes] as measured: bpm 2.3 kB per primary and 7 kB per grain; mpm 0.9 kB per point
-  double disk = 0;   ///< [bytes] snapshots and ParaView's files
-  double hours = 0;  ///< [h] on one thread; bpm: with 17 sweeps a step, as usual
+  double memory = 0;     ///< [bytes] as measured (docs/scaling.md)
+  double shared_memory = 0;  ///< [bytes] of it, that which the ranks of softgrain-mpi divide among them
+  double disk = 0;           ///< [bytes] snapshots and ParaView's files
+  double hours = 0;          ///< [h] on one thread; bpm: with 17 sweeps a step, as usual
 };
 
 /// Material points of a grain that is not bonded; of a rigid one the vertices of its outline.

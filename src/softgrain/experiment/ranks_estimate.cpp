@@ -31,12 +31,14 @@ int most_ranks(const Case& c) {
 
 RanksEstimate estimate_on_ranks(const Case& the_case, const Estimate& alone, int ranks) {
   constexpr double latency = 2e-6, bandwidth = 5e9;  // [s], [bytes/s]: assumed
+  constexpr double of_mpi = 20e6;                    // [bytes] of each rank
   const Sharing sharing = sharing_of(the_case);
   const int useful = sharing.shared > 0 ? std::min(ranks, most_ranks(the_case)) : 1;
   const double work = 3600 * alone.hours * (1 - sharing.shared + sharing.shared / useful);
   const double exchange = sharing.exchanges * latency * std::log2(static_cast<double>(ranks)) +
                           (ranks > 1 ? sharing.bytes_of_particle * alone.particles / bandwidth : 0);
-  return {.hours = (work + alone.steps * exchange) / 3600, .memory = alone.memory, .useful = useful};
+  const double memory = alone.memory - alone.shared_memory * (1 - 1.0 / useful) + (ranks > 1 ? of_mpi : 0);
+  return {.hours = (work + alone.steps * exchange) / 3600, .memory = memory, .useful = useful};
 }
 
 }  // namespace softgrain

@@ -7,7 +7,7 @@ namespace softgrain {
 /// What the ranks of softgrain-mpi will take for a run, each with one thread.
 struct RanksEstimate {
   double hours = 0;   ///< wall time [h] if each rank has a core of its own
-  double memory = 0;  ///< of each rank [bytes]: the state is on all of them
+  double memory = 0;  ///< of the first rank [bytes], which holds the most: the state is on all of them
   int useful = 1;     ///< ranks that have work; more wait
 };
 
