@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <initializer_list>
 #include <limits>
 
 #include "softgrain/core/error.hpp"
@@ -136,7 +137,7 @@ void write_all_of(const fs::path& path, const Pieces& pieces, Survives survives)
 }  // namespace
 
 void write_file(const fs::path& path, std::string_view bytes, Survives survives) {
-  write_all_of(path, std::initializer_list{bytes}, survives);
+  write_all_of(path, std::initializer_list<std::string_view>{bytes}, survives);
 }
 
 void write_pieces(const fs::path& path, std::span<const std::string> pieces, Survives survives) {

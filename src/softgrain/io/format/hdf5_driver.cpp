@@ -5,7 +5,10 @@
 #include <H5FDdevelop.h>
 #endif
 
-#include <memory>
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <new>
 
 namespace softgrain {
 namespace {
@@ -17,14 +20,19 @@ struct OpenStore {
   haddr_t end = 0;  // of what the library has given away
 };
 
+/// What the library keeps in a list of properties, and copies.
+struct StoreOfFile {
+  ByteStore* store = nullptr;
+};
+
 OpenStore& opened(H5FD_t* file) { return *reinterpret_cast<OpenStore*>(file); }
 const OpenStore& opened(const H5FD_t* file) { return *reinterpret_cast<const OpenStore*>(file); }
 
 H5FD_t* open_store(const char*, unsigned, hid_t access, haddr_t) {
-  auto* const* store = static_cast<ByteStore* const*>(H5Pget_driver_info(access));
-  auto* file = store == nullptr ? nullptr : new (std::nothrow) OpenStore;
+  const auto* given = static_cast<const StoreOfFile*>(H5Pget_driver_info(access));
+  auto* file = given == nullptr ? nullptr : new (std::nothrow) OpenStore;
   if (file == nullptr) return nullptr;
-  file->store = *store;
+  file->store = given->store;
   return &file->of_library;
 }
 
@@ -47,7 +55,7 @@ H5FD_class_t driver_class() {
   driver.name = "softgrain";
   driver.maxaddr = HADDR_MAX / 2;
   driver.fc_degree = H5F_CLOSE_WEAK;
-  driver.fapl_size = sizeof(ByteStore*);
+  driver.fapl_size = sizeof(StoreOfFile);
   driver.open = open_store;
   driver.close = [](H5FD_t* file) -> herr_t {
     delete &opened(file);
@@ -85,8 +93,8 @@ H5FD_class_t driver_class() {
 int use_store(std::int64_t access, ByteStore& store) {
   static const H5FD_class_t driver = driver_class();
   static const hid_t number = H5FDregister(&driver);
-  const ByteStore* const info = &store;
-  return number < 0 ? -1 : H5Pset_driver(access, number, &info);
+  const StoreOfFile given{&store};
+  return number < 0 ? -1 : H5Pset_driver(access, number, &given);
 }
 
 }  // namespace softgrain
