@@ -14,11 +14,11 @@ struct Sharing {
 };
 
 Sharing sharing_of(const Case& c) {
-  if (is_bonded(c)) return {.shared = 12.6 / 16.9, .exchanges = 17.8, .bytes_of_particle = 32};
+  if (is_bonded(c)) return {.shared = 0.62, .exchanges = 42, .bytes_of_particle = 15};
   if (!is_elastic(c) || c.mpm.formulation == Formulation::updated_lagrangian) return {};
   if (c.mpm.integrator == Integrator::symplectic_euler || is_in_space(c))
-    return {.shared = 0.48, .exchanges = 4.0, .bytes_of_particle = 8.2};
-  return {.shared = 10.0 / 13.6, .exchanges = 12.8, .bytes_of_particle = 38};
+    return {.shared = 0.60, .exchanges = 32, .bytes_of_particle = 11};
+  return {.shared = 0.82, .exchanges = 40, .bytes_of_particle = 30};
 }
 
 /// Elastic grains are shared in batches of eight.

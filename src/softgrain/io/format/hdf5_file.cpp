@@ -186,8 +186,10 @@ Array Hdf5File::read_rows(const std::string& path, std::size_t first, std::size_
 }
 
 void Hdf5File::read_in_blocks(const std::string& path,
+                              const std::function<void(const ArrayShape& shape)>& begin,
                               const std::function<void(const Array& rows)>& visit) const {
   const Dataset dataset(file_, path, name_, size_);
+  begin({dataset.rows(), dataset.columns(), dataset.type_class() == H5T_INTEGER});
   const std::size_t most = dataset.rows_at_once();
   for (std::size_t first = 0; first < dataset.rows(); first += most) {
     const std::size_t rows = std::min(most, dataset.rows() - first);

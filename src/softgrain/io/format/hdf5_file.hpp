@@ -31,8 +31,9 @@ class Hdf5File {
   Array read(const std::string& path) const;
   /// Its rows first .. first + count - 1.
   Array read_rows(const std::string& path, std::size_t first, std::size_t count) const;
-  /// visit(rows) for all rows one after the other, as many at once as a chunk has.
-  void read_in_blocks(const std::string& path, const std::function<void(const Array& rows)>& visit) const;
+  /// begin(shape), then visit(rows) for all rows one after the other, as many at once as a chunk has.
+  void read_in_blocks(const std::string& path, const std::function<void(const ArrayShape& shape)>& begin,
+                      const std::function<void(const Array& rows)>& visit) const;
   /// All, converted, flat and row-major.
   std::vector<double> read_reals(const std::string& path) const;
   std::vector<std::int64_t> read_integers(const std::string& path) const;

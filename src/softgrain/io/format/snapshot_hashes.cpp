@@ -67,8 +67,8 @@ void ContentHash::add(const Array& rows) {
 }
 
 void ContentHash::add(const Hdf5File& file, const std::string& path) {
-  begin(path, file.shape(path));
-  file.read_in_blocks(path, [this](const Array& rows) { add(rows); });
+  file.read_in_blocks(
+      path, [&](const ArrayShape& shape) { begin(path, shape); }, [this](const Array& rows) { add(rows); });
 }
 
 std::string ContentHash::digest() const { return hash_->digest(); }
