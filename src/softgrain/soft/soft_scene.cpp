@@ -123,7 +123,7 @@ std::vector<ScenePart> scene_parts(const SoftGrains& grains) {
   return parts;
 }
 
-int points_of(const SoftGrains& grains, int g) {
+int count_of_points(const SoftGrains& grains, int g) {
   const Topology& shape = grains.topology(g);
   return shape.rigid() ? 4 : static_cast<int>(shape.points.size());
 }
@@ -161,7 +161,7 @@ ParticleParts particle_parts(const SoftView& view) {
   const SoftGrains& grains = view.grains;
   ParticleParts parts;
   std::size_t rows = 0;
-  for (int g = 0; g < grains.size(); ++g) rows += points_of(grains, g);
+  for (int g = 0; g < grains.size(); ++g) rows += count_of_points(grains, g);
   PointRows(grains).for_each_column([&]<class T>(const char* name, std::size_t columns, std::vector<T>&) {
     parts.arrays[name] = {.rows = rows, .columns = columns, .integers = !std::is_same_v<T, double>};
   });
@@ -197,7 +197,7 @@ Scene soft_scene(const SoftView& view) {
   const OutlineForces felt = grains.has_rigid() ? outline_forces(view) : OutlineForces{};
   PointRows rows(grains);
   std::size_t points = 0;
-  for (int g = 0; g < grains.size(); ++g) points += points_of(grains, g);
+  for (int g = 0; g < grains.size(); ++g) points += count_of_points(grains, g);
   rows.reserve(points);
   for (const ScenePart& part : scene_parts(grains)) add_part(grains, felt, part, rows);
   Scene scene = scene_around_points(view);
