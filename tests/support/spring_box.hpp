@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -60,7 +61,7 @@ class SpringModel final : public FakeModel {
       const double x = press.share[2] + press.share[3], y = press.share[0] + press.share[1];
       return std::array<double, 2>{box.width() - dt * x * v, box.height() - dt * y * v};
     };
-    double low = -press.most, high = press.most;
+    double high = std::min(press.most, 1e3), low = -high;
     for (int k = 0; k < 50; ++k) {
       const double v = (low + high) / 2;
       const double free = press.free_speed(dt) - dt * felt(press, after(v)) * press.mobility(dt);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "softgrain/core/error.hpp"
 #include "softgrain/loading/loading.hpp"
@@ -10,21 +11,27 @@ namespace {
 /// The force on a cell is that of the step before: it must not answer within a few steps.
 constexpr double steps_behind = 30;
 
-/// Times the speed of the loading at which walls that keep a stress go at most where others move: grains that
-/// rearrange push them faster than those.
+/// Times the speed of the loading at which walls come in at most for a stress that they do not bear yet,
+/// where others move.
 constexpr double beside_motion = 50;
 
+/// Of its stress: a press that bears so much has met the grains.
+constexpr double bears = 0.5;
+
 /// Of the time tau of a press, beside walls that others move: there its own mass and damper are what its
-/// stress errs by (docs/decisions/0073).
-constexpr double quicker_beside_motion = 0.2;
+/// stress errs by (docs/decisions/0082).
+constexpr double membrane_share = 0.02;
+/// Of a step: a lighter press takes NLGS more sweeps.
+constexpr double membrane_share_of_step = 1.0 / 30;
 
 /// Of the way of a stage: less is no step more.
 constexpr double rounding = 1e-9;
 
-/// k as before, tau a fifth of before, but no less than a tenth of a step.
-PressBody quicker(const PressBody& body, double dt) {
+/// k as before, tau a fiftieth of before, or a thirtieth of a step if that is more: hardly more than a
+/// membrane.
+PressBody membrane(const PressBody& body, double dt) {
   const double tau = 2 * body.mass / body.damper;
-  const double share = std::clamp(dt / 10 / tau, quicker_beside_motion, 1.0);
+  const double share = std::max(membrane_share, membrane_share_of_step * dt / tau);
   return {.mass = share * share * body.mass, .damper = share * body.damper};
 }
 
@@ -167,12 +174,17 @@ Press LoadingOf<Dim>::press_of(const Drive& drive, const Box<Dim>& box, const Mo
   const bool alone = std::none_of(stage.drives.begin(), stage.drives.end(), [](const Drive& other) {
     return (other.is_given() && other.value != 0) || other.control == Control::strain;
   });
-  const double most = frame_.wall_velocity * (alone ? 1 : beside_motion);
-  if (!alone && !of_cell) body = quicker(body, dt);
+  const double force = drive.target(time + dt - stage_start_) * pressed;
+  double most = frame_.wall_velocity * (alone ? 1 : beside_motion);
+  if (!alone && !of_cell) {
+    body = membrane(body, dt);
+    // it goes where the grains go that it has met
+    if (press_force_[part] >= bears * force) most = std::numeric_limits<double>::infinity();
+  }
   std::array<double, 6> of_walls{};
   std::copy(share.begin(), share.end(), of_walls.begin());
   return {.share = of_walls,
-          .force = drive.target(time + dt - stage_start_) * pressed,
+          .force = force,
           .mass = body.mass * pressed,
           .damper = body.damper * pressed,
           .most = drive.speed > 0 ? drive.speed : most,

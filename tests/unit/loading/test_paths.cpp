@@ -29,7 +29,8 @@ TEST_CASE("a biaxial path confines, and compresses while the sides keep their st
   CHECK(run.loading.outcome().shortfall.empty());
 }
 
-TEST_CASE("sides that keep their stress beside a wall that moves have a fifth of the time of a press alone") {
+TEST_CASE(
+    "sides that keep their stress beside a wall that moves have a fiftieth of the time of a press alone") {
   const auto sides = [](double speed, double step) {
     SpringRun run =
         run_of({{.drives = {moves(Part::yy, speed), keeps(Part::xx, target)}, .until = {.time = 1}}}, 0);
@@ -38,12 +39,27 @@ TEST_CASE("sides that keep their stress beside a wall that moves have a fifth of
     return run.box.presses[0];
   };
   const Press alone = sides(0, dt), beside = sides(v, dt);
-  CHECK(std::abs(beside.time() / alone.time() - 0.2) < 1e-12);
-  // the same stiffness m/tau^2, so critically damped as before
-  CHECK(std::abs(beside.mass / std::pow(beside.time(), 2) * std::pow(alone.time(), 2) / alone.mass - 1) <
-        1e-12);
-  const Press half = sides(v, 5 * alone.time());  // a tenth of a step is half of the time
-  CHECK(std::abs(half.time() / alone.time() - 0.5) < 1e-12);
+  CHECK(std::abs(beside.time() / alone.time() - 0.02) < 1e-12);
+  CHECK(std::abs(beside.mass / alone.mass - 0.02 * 0.02) < 1e-12);  // the same m/tau^2: critically damped
+  const Press in_long_steps = sides(v, 6 * alone.time());           // a thirtieth of a step
+  CHECK(std::abs(in_long_steps.time() / alone.time() - 0.2) < 1e-12);
+}
+
+TEST_CASE("sides beside a wall that moves are limited in their speed until they have met the grains") {
+  for (const double given : {0.0, 3.0}) {
+    Drive sides = keeps(Part::xx, target);
+    sides.speed = given;
+    SpringRun run = run_of({{.drives = {moves(Part::yy, v), sides}, .until = {.time = 1}}}, 0);
+    for (const double share : {0.0, 0.4, 0.6}) {
+      run.loading.drive(run.box, run.model, run.time(), dt);
+      Press& press = run.box.presses[0];
+      press.mean_force = share * press.force;
+      run.loading.after_step(run.box, run.time() + dt, dt, {});
+      run.loading.drive(run.box, run.model, run.time() + dt, dt);
+      const double free = share > 0.5 ? std::numeric_limits<double>::infinity() : 50 * v;
+      CHECK(run.box.presses[0].most == (given > 0 ? given : free));
+    }
+  }
 }
 
 TEST_CASE("a die presses with its top wall to a stress, keeps it, and lets go") {

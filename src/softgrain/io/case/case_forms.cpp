@@ -84,7 +84,7 @@ void add_forms_of(std::string_view part, std::string_view walls, std::vector<For
   all.push_back(number(name + ".velocity", "m/s", any, "at which they come together, half by each of a pair; below 0: apart"));
   all.push_back(number(name + ".rate", "1/s", any, "of the strain, compression positive"));
   all.push_back(number(name + ".stress", "MPa", positive, "that they keep, compression positive, of a pair in the mean"));
-  all.push_back(number(name + ".speed", "m/s", positive, "of walls that keep a stress, at most; left out: loading.wall_velocity, where other parts move 50 times that"));
+  all.push_back(number(name + ".speed", "m/s", positive, "of walls that keep a stress, at most; left out: loading.wall_velocity, or where other parts move 50 times that until they have met the grains, and then no limit"));
   all.push_back(number(name + ".stress_amplitude", "MPa", positive, "of the wave that is added to the stress"));
   all.push_back(number(name + ".strain_amplitude", "", {.low = 0, .high = 1, .without_low = true}, "of the wave of the strain about that where the stage began"));
   all.push_back(number(name + ".period", "ms", positive, "of the wave"));
