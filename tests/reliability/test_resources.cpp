@@ -24,7 +24,7 @@ TEST_CASE("a case too large for the machine is refused before anything is writte
   const Workshop workshop;
   const std::string line =
       "$SG new a --template compaction-mpm > /dev/null; ulimit -v 600000; exec $SG run a/case.toml "
-      "--set sample.grains=300 -q ";
+      "--set sample.grains=300 --set mpm.cells=32 -q ";
   const ProcessResult refused = workshop.shell(line + "-o out");
   CAPTURE(refused.err);
   CHECK(refused.exit_code == 2);
