@@ -124,7 +124,9 @@ TEST_CASE("the directory that new made is a case, and so is a file's name withou
   CHECK(softgrain_program({"new", "squeeze"}, here).exit_code == 0);
   CHECK(softgrain_program({"check", "squeeze"}, here).exit_code == 0);
   CHECK(softgrain_program({"check", "squeeze/case"}, here).exit_code == 0);
-  CHECK(softgrain_program({"run", "squeeze", "-q", "--stop-after", "1 ms"}, here).exit_code == 75);
+  CHECK(
+      softgrain_program({"run", "squeeze", "-q", "--stop-after", "1 ms", "--set", "bpm.primaries=100"}, here)
+          .exit_code == 75);
   CHECK(fs::exists(folder.path() / "squeeze/case_run/run.json"));
 }
 
