@@ -128,6 +128,12 @@ int count_of_points(const SoftGrains& grains, int g) {
   return shape.rigid() ? 4 : static_cast<int>(shape.points.size());
 }
 
+std::size_t count_of_points(const SoftGrains& grains) {
+  std::size_t count = 0;
+  for (int g = 0; g < grains.size(); ++g) count += static_cast<std::size_t>(count_of_points(grains, g));
+  return count;
+}
+
 /// What the points of rigid grains are made of: outlines, and contact forces on them.
 struct OutlineForces {
   std::vector<Vec<2>> outline, force;
@@ -160,8 +166,7 @@ void add_part(const SoftGrains& grains, const OutlineForces& felt, const ScenePa
 ParticleParts particle_parts(const SoftView& view) {
   const SoftGrains& grains = view.grains;
   ParticleParts parts;
-  std::size_t rows = 0;
-  for (int g = 0; g < grains.size(); ++g) rows += count_of_points(grains, g);
+  const std::size_t rows = count_of_points(grains);
   PointRows(grains).for_each_column([&]<class T>(const char* name, std::size_t columns, std::vector<T>&) {
     parts.arrays[name] = {.rows = rows, .columns = columns, .integers = !std::is_same_v<T, double>};
   });
@@ -196,9 +201,7 @@ Scene soft_scene(const SoftView& view) {
   const SoftGrains& grains = view.grains;
   const OutlineForces felt = grains.has_rigid() ? outline_forces(view) : OutlineForces{};
   PointRows rows(grains);
-  std::size_t points = 0;
-  for (int g = 0; g < grains.size(); ++g) points += count_of_points(grains, g);
-  rows.reserve(points);
+  rows.reserve(count_of_points(grains));
   for (const ScenePart& part : scene_parts(grains)) add_part(grains, felt, part, rows);
   Scene scene = scene_around_points(view);
   scene.particles = rows.take();

@@ -25,6 +25,8 @@ void silence_library() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 }  // namespace
 
+std::int64_t type_in_memory(bool integers) { return integers ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE; }
+
 std::string hdf5_version() {
   unsigned major = 0, minor = 0, release = 0;
   H5get_libversion(&major, &minor, &release);
@@ -83,8 +85,6 @@ std::vector<std::string> Hdf5File::datasets() const {
 }
 
 namespace {
-
-hid_t type_in_memory(bool integers) { return integers ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE; }
 
 /// One dataset, opened, and its size.
 class Dataset {

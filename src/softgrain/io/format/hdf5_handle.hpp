@@ -32,4 +32,7 @@ Status checked(Status status, const std::string& file, std::string_view what) {
   return status;
 }
 
+/// The library's identifier of the type of an Array's numbers.
+std::int64_t type_in_memory(bool integers);
+
 }  // namespace softgrain

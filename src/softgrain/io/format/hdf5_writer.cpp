@@ -28,8 +28,6 @@ Hdf5Writer::~Hdf5Writer() {
 
 namespace {
 
-hid_t type_in_memory(bool integers) { return integers ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE; }
-
 const void* data_of(const Array& array) {
   return std::visit([](const auto& v) -> const void* { return v.data(); }, array.values);
 }
