@@ -35,8 +35,8 @@ TEST_CASE(
     REQUIRE(whole.exit_code == 0);
     const std::size_t snapshots = workshop.snapshots("whole").size();
     REQUIRE(snapshots == 7 + tiny.turns);  // the first state, six even shares of the run, and the turns
-    // five and six: one is the state at a turn, the other in the middle of unloading; of an example, whose
-    // model is among the templates, the latter
+    // five and six: one is the state at a turn, the other in the middle of unloading; of an example
+    // the latter alone
     const std::size_t first = tiny.source.starts_with('/') ? 6 : 5;
     check_resumed_from(workshop, torture() ? 1 : first, torture() ? snapshots : 7);
   }
