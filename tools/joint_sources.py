@@ -4,8 +4,8 @@
     tools/joint_sources.py LINES SOURCE... [-- SOURCE...]    prints "NUMBER SOURCE" for each: those of one number are one joint
 
 A joint source has at most LINES lines. -- keeps the sources before it from those behind it. Sources with a name in common
-in their anonymous namespaces, or that make functions of one template, are not joined; nor is one whose hidden name stands in
-a header of src/, or of tests/, that another one of that folder includes.
+in their anonymous namespaces, or that instantiate the same, are not joined; nor is one whose hidden name stands in a header
+of src/, or of tests/, that another one of that folder includes.
 """
 import functools
 import re
@@ -16,8 +16,8 @@ ROOT = Path(__file__).resolve().parent.parent
 HIDDEN = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.M | re.S)
 # a name that a line without indentation defines: type, alias, function, variable
 DEFINED = re.compile(r"^(?:struct|class|enum class|using|concept) (\w+)|^[\w:].*?[ &*>](\w+)(?:\(|\{| = |;|\[)", re.M)
-# the last name before < in an explicit instantiation: template double RigidDynamics<2>::friction_work() const;
-INSTANTIATED = re.compile(r"^template (?!<)[^(;]*?(\w+)<[^<>]*>[^<(;]*[(;]", re.M)
+# what is instantiated: RigidDynamics<2>, or RigidDynamics<2>::friction_work
+INSTANTIATED = re.compile(r"^template (?:(?:class|struct) (\w+<[^<>]*>)|(?!<)[^(;]*?(\w+<[^<>]*>[^<(;\s]*)[(;])", re.M)
 TAKEN_IN = re.compile(r"^using [\w:]*::(\w+);", re.M)
 INCLUDED = re.compile(r'^#include "([\w/]+\.hpp)"', re.M)
 
@@ -28,9 +28,9 @@ def defined(text):
 
 
 def own_names(text):
-    """Names that a source hides or takes in, and the functions that it makes of templates."""
+    """Names that a source hides or takes in."""
     hidden = {name for block in HIDDEN.findall(text) for name in defined(block)}
-    return hidden | set(TAKEN_IN.findall(text)) | set(INSTANTIATED.findall(text))
+    return hidden | set(TAKEN_IN.findall(text))
 
 
 @functools.cache
@@ -50,28 +50,32 @@ def headers_of(source, text):
 
 class Joint:
     def __init__(self):
-        self.sources, self.lines, self.own, self.shared = [], 0, set(), set()
+        self.sources, self.lines, self.own, self.shared, self.made = [], 0, set(), set(), set()
 
-    def takes(self, lines, own, shared, longest):
-        apart = not (self.own & (own | shared)) and not (self.shared & own)
+    def takes(self, lines, own, shared, made, longest):
+        # a class makes its members, too
+        twice = any(a.startswith(b) or b.startswith(a) for a in self.made for b in made)
+        apart = not (self.own & (own | shared)) and not (self.shared & own) and not twice
         return apart and (not self.sources or self.lines + lines <= longest)
 
 
 def joints(sources, longest):
     """Lists of sources that can be compiled as one."""
-    made = []
+    found = []
     for source in sorted(sources):
         text = Path(source).read_text()
         lines, own = text.count("\n"), own_names(text)
         shared = set().union(*map(names_in, headers_of(Path(source), text)))
-        joint = next((joint for joint in made if joint.takes(lines, own, shared, longest)), None)
+        made = set(map("".join, INSTANTIATED.findall(text)))
+        joint = next((joint for joint in found if joint.takes(lines, own, shared, made, longest)), None)
         if joint is None:
-            made.append(joint := Joint())
+            found.append(joint := Joint())
         joint.sources.append(source)
         joint.lines += lines
         joint.own |= own
         joint.shared |= shared
-    return [joint.sources for joint in made]
+        joint.made |= made
+    return [joint.sources for joint in found]
 
 
 if __name__ == "__main__":

@@ -69,10 +69,10 @@ void LoadingOf<Dim>::note_past() {
     const double way = *until.packing_fraction - packing_fraction(length_at_stage_);
     past = past || (std::abs(way) > rounding && (way < 0) != opens());
   }
-  const auto no_stress = std::find(until.stress.begin(), until.stress.end(), std::nullopt);
-  if (!past || no_stress == until.stress.end()) return;
+  const auto without_stress = std::find(until.stress.begin(), until.stress.end(), std::nullopt);
+  if (!past || without_stress == until.stress.end()) return;
   unreached_stage_ = static_cast<int>(stage_);
-  unreached_part_ = static_cast<int>(no_stress - until.stress.begin());
+  unreached_part_ = static_cast<int>(without_stress - until.stress.begin());
 }
 
 template <int Dim>
