@@ -19,8 +19,9 @@ constexpr double largest_move = 0.1;
 /// force, in tolerances (docs/decisions/0023).
 constexpr double quasi_static_correction = 8, quasi_static_force = 10;
 /// The force where A has the inertia of a longer step, as hardly any force holds the grains: what is left of
-/// it works along their long ways (docs/decisions/0031).
-constexpr double floppy_force = 4;
+/// it works along their long ways (docs/decisions/0031). Most of these steps reach the early bound at once.
+constexpr double floppy_force = 4, early_floppy_force = 0.3;
+constexpr int early_iterations = 40;
 
 /// Of a line search: corrections that count, in tolerances, and how often a move is halved.
 constexpr double searched_from = 10, most_halvings = 4;
@@ -58,7 +59,7 @@ Wide secant(const WideVectors& f, const WideVectors& f_before) {
 }  // namespace
 
 /// Solves A f = r + H p/dt and moves x by f and what the iterations before add to it.
-ImplicitDynamics::Imbalance ImplicitDynamics::correct(bool first, bool same_matrix) {
+ImplicitDynamics::Imbalance ImplicitDynamics::correct(int iteration, bool same_matrix) {
   const std::vector<Vec<2>> force = contact_forces(grains, contacts, felt(), outline_.dt);
   own_for(grains.shares, batches(), [&](int b) {
     const GrainBatch& batch = grains.batches[b];
@@ -73,15 +74,18 @@ ImplicitDynamics::Imbalance ImplicitDynamics::correct(bool first, bool same_matr
   const double correction = std::max(largest_correction_of_grains(), press_moved_) / mean_radius_;
   if (!quasi_static(outline_.dt)) {
     if (grains.has_history())
-      follow_search(first);
+      follow_search(iteration == 1);
     else
       follow_secant(same_matrix && correction >= options.tolerance);
     return {.correction = correction, .residual = correction};
   }
-  const double largest_force = inertia_of_ > options.inertia_of_at_most ? floppy_force : quasi_static_force;
+  const bool floppy = inertia_of_ > options.inertia_of_at_most;
+  const double largest_force = !floppy                         ? quasi_static_force
+                               : iteration <= early_iterations ? early_floppy_force
+                                                               : floppy_force;
   const double residual =
       std::max(correction / quasi_static_correction, unbalanced_force(force) / largest_force);
-  follow_momentum(first, residual >= options.tolerance);
+  follow_momentum(iteration == 1, residual >= options.tolerance);
   return {.correction = correction, .residual = residual};
 }
 

@@ -145,7 +145,7 @@ ImplicitDynamics::Failure ImplicitDynamics::try_step(double dt, SoftStepReport& 
   for (int iteration = 1; failure == Failure::none; ++iteration) {
     if ((failure = residual(dt)) != Failure::none) break;
     const bool contacts_solved = solve_contacts(dt, report);
-    left = correct(iteration == 1, (iteration - 1) % renewal != 0);
+    left = correct(iteration, (iteration - 1) % renewal != 0);
     ++report.iterations;
     if (!std::isfinite(left.correction)) return Failure::not_finite;
     const bool too_far = left.correction >= largest_correction;

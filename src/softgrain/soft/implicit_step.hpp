@@ -169,7 +169,7 @@ class ImplicitDynamics {
   void end_rigid(int b, double dt);
   Wide inertia_work_of_rigid(int b) const;
   bool solve_contacts(double dt, SoftStepReport& report);
-  Imbalance correct(bool first, bool same_matrix);
+  Imbalance correct(int iteration, bool same_matrix);
   double largest_correction_of_grains();
   double unbalanced_force(std::span<const Vec<2>> contact_force);
   void follow_secant(bool accelerated);
