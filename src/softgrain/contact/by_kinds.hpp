@@ -32,6 +32,7 @@ class ByKinds {
   const T& of(int kind, int other) const {
     return other == wall ? at_walls_[kind] : between_[kind * kinds_ + other];
   }
+  bool operator==(const ByKinds&) const = default;
 
  private:
   int kinds_ = 0;

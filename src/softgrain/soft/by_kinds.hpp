@@ -9,7 +9,7 @@ template <class T, int Dim, class Contact>
 const T& value_of(const ByKinds<T>& by_kinds, const GrainsOf<Dim>& grains, const Contact& contact) {
   return by_kinds.of(
       grains.kind(grains.grain_of_vertex(contact.vertex)),
-      contact.wall >= 0 ? ByKinds<T>::wall : grains.kind(grains.grain_of_vertex(contact.master[0])));
+      contact.wall >= 0 ? ByKinds<T>::wall : grains.kind(grains.grain_of_vertex(contact.facing_vertex())));
 }
 
 }  // namespace softgrain

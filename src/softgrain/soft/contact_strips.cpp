@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "softgrain/contact/contact_levels.hpp"
 
 namespace softgrain {
 namespace {
@@ -9,14 +12,16 @@ namespace {
 /// Contacts of a strip, about: enough that a thread has something to do.
 constexpr int contacts_per_strip = 64;
 
+/// Of one or more levels, at least.
+constexpr int contacts_per_level = 256;
+
 }  // namespace
 
-template <int Dim>
-void ContactStrips::sort(Contacts<Dim> contacts, const OutlineStateOf<Dim>& outline) {
+void ContactStrips::sort(std::span<const OutlineContact> contacts, const OutlineState& outline) {
   const int n = static_cast<int>(contacts.size());
   const bool ring = outline.cell.repeats[0];  // the last strip is then next to the first
-  const Mat<Dim> to_share = inverse(outline.cell.edges);
-  const auto along = [&](const Vec<Dim>& x) { return ring ? (to_share * x)[0] : x[0]; };
+  const Mat<2> to_share = inverse(outline.cell.edges);
+  const auto along = [&](const Vec<2>& x) { return ring ? (to_share * x)[0] : x[0]; };
   double low = 0, high = 0, reach = 0;  // of a contact's vertices from its slave
   for (int c = 0; c < n; ++c) {
     const double x = along(outline.position[contacts[c].vertex]), image = ring ? along(contacts[c].image) : 0;
@@ -26,12 +31,7 @@ void ContactStrips::sort(Contacts<Dim> contacts, const OutlineStateOf<Dim>& outl
       if (vertex != contacts[c].vertex)
         reach = std::max(reach, std::abs(along(outline.position[vertex]) + shift - x));
     };
-    if constexpr (Dim == 2) {
-      contacts[c].for_each_vertex([&](int vertex, double) { reach_to(vertex, image); });
-    } else {
-      contacts[c].for_each_own_vertex([&](int vertex, double) { reach_to(vertex, 0); });
-      contacts[c].for_each_facing_vertex([&](int vertex, double) { reach_to(vertex, image); });
-    }
+    contacts[c].for_each_vertex([&](int vertex, double) { reach_to(vertex, image); });
   }
   if (ring) low = 0, high = 1;
   // vertices of strip s lie in (s width - reach, (s + 1) width + reach)
@@ -55,7 +55,22 @@ void ContactStrips::sort(Contacts<Dim> contacts, const OutlineStateOf<Dim>& outl
   for (int c = 0; c < n; ++c) order[place[c] = next[strip_[c]]++] = c;
 }
 
-template void ContactStrips::sort(Contacts<2>, const OutlineStateOf<2>&);
-template void ContactStrips::sort(Contacts<3>, const OutlineStateOf<3>&);
+void ContactStrips::sort(std::span<const SurfaceContact> contacts) {
+  const auto n = static_cast<int>(contacts.size());
+  int grains = 0;
+  for (const SurfaceContact& c : contacts) grains = std::max({grains, c.grain + 1, c.facing + 1});
+  std::vector<int> next(grains + 1), by_grain(n), grain(n), facing(n);
+  for (const SurfaceContact& c : contacts) ++next[c.grain + 1];
+  for (int g = 0; g < grains; ++g) next[g + 1] += next[g];
+  for (int c = 0; c < n; ++c) {
+    const int k = next[contacts[c].grain]++;
+    by_grain[k] = c, grain[k] = contacts[c].grain, facing[k] = contacts[c].facing;
+  }
+  ContactLevels levels = contact_levels(grain, facing, grains, contacts_per_level);
+  begin = std::move(levels.begin);
+  order = std::move(levels.contact);
+  place.resize(n);
+  for (int k = 0; k < n; ++k) place[order[k] = by_grain[order[k]]] = k;
+}
 
 }  // namespace softgrain

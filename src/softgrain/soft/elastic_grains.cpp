@@ -232,6 +232,7 @@ void ElasticGrains<Dynamics>::visit(StateVisitor& visit) {
   if constexpr (std::is_same_v<Dynamics, ImplicitDynamics>) {
     visit_sub_steps(dynamics_, visit);
   } else {
+    if (visit.reads()) dynamics_.forget_rows();
     visit_stable_step(dynamics_.stable, visit);
     if (Dim == 3)
       visit({"until_search", "", Owner::run, Role::start, "sub-steps until contacts are looked for again"},

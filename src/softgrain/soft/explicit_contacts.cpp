@@ -40,11 +40,10 @@ void ExplicitStep<Dim>::find_contacts(double dt) {
   if constexpr (Dim == 3) {
     if (stable.until_search > 0) {
       --stable.until_search;
-      const int count = static_cast<int>(contacts.size());
-      parallel_for((count + contacts_at_once - 1) / contacts_at_once, [&](int k) {
-        for (int c = k * contacts_at_once; c < std::min(count, (k + 1) * contacts_at_once); ++c)
-          update_gap(contacts[c], outline_);
-      });
+      if (box.cell.any())
+        parallel_ranges(static_cast<int>(contacts.size()), [&](int begin, int end) {
+          for (int c = begin; c < end; ++c) update_image(contacts[c], outline_);
+        });
       return;
     }
     // rigid grains alone take long steps
@@ -55,6 +54,7 @@ void ExplicitStep<Dim>::find_contacts(double dt) {
   if constexpr (Dim == 2)
     if (adheres()) attraction = carried_attraction(grains, contacts, attraction, found);
   contacts = std::move(found);
+  forget_rows();
 }
 
 /// v_free, then v+.
@@ -68,10 +68,11 @@ SolverReport ExplicitStep<Dim>::kick_and_solve(double dt, const JointSolve<Dim>&
     adhesive = adhesion_.contacts(grains, contacts, outline_, false, attraction);
     if (impulse_time <= 0) adhesion_energy = energy_at_start(adhesive);
   }
+  lumped_scratch_.kept = Dim == 3;
   PushedBodies pressed = pressed_walls(box, contacts, felt(), dt);
   system.push(pressed);
   kick(dt);
-  const std::vector<double> friction = friction_by_kind().template of<Dim>(grains, contacts);
+  const std::vector<double>& friction = friction_of_contacts();
   system.apply_impulses(felt());
   SolverOptions solver = options.solver;
   solver.velocity_scale = mean_radius_ / dt;
@@ -137,6 +138,17 @@ void ExplicitStep<Dim>::add_contact_work(double dt) {
   softgrain::add_contact_work<Dim>(contacts, felt(), outline_, work, box.impulse);
   outline_.walls = box.walls;
   end_step_of_presses(box, contacts, felt(), dt, other_push);
+}
+
+/// mu of each, which stay while the contacts and the law do.
+template <int Dim>
+const std::vector<double>& ExplicitStep<Dim>::friction_of_contacts() {
+  const FrictionByKind law = friction_by_kind();
+  if (friction_.size() != contacts.size() || !(law == friction_law_)) {
+    friction_ = law.template of<Dim>(grains, contacts);
+    friction_law_ = law;
+  }
+  return friction_;
 }
 
 /// (p_n - a, p_t) of the contacts [N s/m in the plane]; until it is called again.

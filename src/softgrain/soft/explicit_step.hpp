@@ -84,6 +84,8 @@ class ExplicitStep {
   /// deformed that thousands of sub-steps would be needed, naming the grain, and as check_wall_motion.
   SoftStepReport step(double dt, const JointSolve<Dim>& joint = {});
 
+  /// After `contacts` were changed from outside, as by a snapshot.
+  void forget_rows() { lumped_scratch_.kept = false, friction_.clear(); }
   /// Impulse of the grains on a wall in the last step [N s/m in the plane].
   const Vec<Dim>& wall_impulse(int wall) const { return box.impulse[wall]; }
   double mean_radius() const { return mean_radius_; }
@@ -123,6 +125,7 @@ class ExplicitStep {
   SolverReport kick_and_solve(double dt, const JointSolve<Dim>& joint);
   void take_back_spin();
   const std::vector<Vec<Dim>>& felt();
+  const std::vector<double>& friction_of_contacts();
   void add_adhesion();
   void find_contacts(double dt);
   void fly_outline(double dt);
@@ -151,6 +154,8 @@ class ExplicitStep {
   LumpedBodiesOf<Dim> bodies_;        // the rigid grains
   std::vector<int> body_of_grain_;    // or -1
   typename LumpedSystem<Dim>::Scratch lumped_scratch_;
+  std::vector<double> friction_;  // (contacts) under friction_law_
+  FrictionByKind friction_law_;
   std::vector<BatchStep> batch_step_;
   MassDamping<Dim> damping_;
 };

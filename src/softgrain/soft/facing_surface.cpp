@@ -90,6 +90,7 @@ class FacesOfEdge {
 SurfaceContact contact_with_patch(const Surfaces& surfaces, const SurfaceContact& point, const Vec<3>& at,
                                   int grain, int nearest, double far) {
   SurfaceContact contact = point;
+  contact.facing = grain;
   set_image(contact, nearest, surfaces.state);
   const Vec<3> x = at - contact.image;
   const SolidTopology& topology = surfaces.grains.topology(grain);

@@ -11,6 +11,7 @@ namespace softgrain {
 /// Coulomb's mu of every pair of kinds.
 class FrictionByKind {
  public:
+  FrictionByKind() = default;
   /// mu between grains and against walls, but of the pairs that are named. Raises UsageError for mu < 0 and
   /// for kinds that are not there.
   FrictionByKind(int kinds, double between_grains, double at_walls, std::span<const PairFriction> named);
@@ -20,6 +21,7 @@ class FrictionByKind {
   /// mu of each contact.
   template <int Dim>
   std::vector<double> of(const GrainsOf<Dim>& grains, Contacts<Dim> contacts) const;
+  bool operator==(const FrictionByKind&) const = default;
 
  private:
   ByKinds<double> mu_;

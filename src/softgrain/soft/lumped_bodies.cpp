@@ -48,7 +48,7 @@ BodyContacts<Dim>::BodyContacts(std::span<const ContactOf<Dim>> contacts, const 
   row_of_.assign(contacts.size(), -1);
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const ContactOf<Dim>& contact = contacts[c];
-    if (bodies.at(contact.vertex) < 0 && (contact.wall >= 0 || bodies.at(contact.master[0]) < 0)) continue;
+    if (bodies.at(contact.vertex) < 0 && (contact.wall >= 0 || bodies.at(contact.facing_vertex()) < 0)) continue;
     row_of_[c] = static_cast<int>(rows_.size());
     contact_.push_back(static_cast<int>(c));
     rows_.push_back(make_row(contact, outline, inverse_mass));
@@ -100,7 +100,8 @@ typename BodyContacts<Dim>::Row BodyContacts<Dim>::make_row(const ContactOf<Dim>
   const Vec<Dim> v =
       contact.wall >= 0 ? outline.walls[contact.wall].velocity : (1 / outline.dt) * contact.image_motion;
   for (int k = 1; k < Dim; ++k) row.offset[k] = -dot(axis[static_cast<std::size_t>(k)], v);
-  row.offset[0] = contact.gap / outline.dt - dot(axis[0], velocity_of(row));
+  const double gap = Dim == 2 ? contact.gap : gap_now(contact, outline);
+  row.offset[0] = gap / outline.dt - dot(axis[0], velocity_of(row));
   return row;
 }
 

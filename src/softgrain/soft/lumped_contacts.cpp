@@ -28,29 +28,58 @@ LumpedSystem<Dim>::LumpedSystem(std::span<const ContactOf<Dim>> contacts, const 
       inverse_mass_(inverse_mass),
       bodies_(bodies),
       of_bodies_(contacts, outline, velocity, inverse_mass, bodies) {
-  strips_.template sort<Dim>(contacts, outline);
-  rows_.resize(contacts.size());
-  if (shared && of_bodies_.contacts().empty()) share_strips(outline.cell.repeats[0]);
+  if (!scratch_.kept) {
+    if constexpr (Dim == 2)
+      strips_.sort(contacts, outline);
+    else
+      strips_.sort(contacts);
+    rows_.resize(contacts.size());
+  }
+  if (shared && of_bodies_.contacts().empty()) share_strips(Dim == 2 && outline.cell.repeats[0]);
+  make_rows(outline);
+}
+
+/// Rows of this rank, where they are not kept, and their offsets.
+template <int Dim>
+void LumpedSystem<Dim>::make_rows(const OutlineStateOf<Dim>& outline) {
   for_each_own_strip([&](int strip) {
     for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
-      if (!of_bodies_.has(strips_.order[k])) rows_[k] = row_of(contacts[strips_.order[k]], outline);
-      rows_[k].contact = strips_.order[k];
+      const int contact = strips_.order[k];
+      const bool of_body = of_bodies_.has(contact);
+      if (!scratch_.kept) {
+        if (!of_body) rows_[k] = Row(contacts_[contact], inverse_mass_);
+        rows_[k].contact = contact;
+      }
+      if (!of_body) set_offset(rows_[k], outline);
     }
   });
 }
 
 template <int Dim>
-typename LumpedSystem<Dim>::Row LumpedSystem<Dim>::row_of(const ContactOf<Dim>& contact,
-                                                          const OutlineStateOf<Dim>& outline) const {
-  Row row(contact, inverse_mass_);
-  if (contact.wall >= 0 || outline.cell.any()) {
-    const Vec<Dim> v =
-        contact.wall >= 0 ? outline.walls[contact.wall].velocity : (1 / outline.dt) * contact.image_motion;
-    row.offset = -to_local(contact.normal, v);
+inline void LumpedSystem<Dim>::set_offset(Row& row, const OutlineStateOf<Dim>& outline) const {
+  if constexpr (Dim == 2) {
+    const OutlineContact& contact = contacts_[row.contact];
+    if (contact.wall >= 0 || outline.cell.any()) {
+      const Vec<2> v =
+          contact.wall >= 0 ? outline.walls[contact.wall].velocity : (1 / outline.dt) * contact.image_motion;
+      row.offset = -to_local(contact.normal, v);
+    }
+    row.offset[0] += contact.gap / outline.dt - relative_velocity(row)[0];
+  } else {
+    // the gap is linear: (g + dt n . (u - u_found))/dt = n . u + n . (x_start - x_faced)/dt
+    Vec<3> faced;
+    row.offset = {};
+    if (row.wall >= 0) {
+      const Wall<3>& wall = outline.walls[row.wall];
+      faced = wall.point;
+      row.offset = -to_local(row.normal, wall.velocity);
+    } else if (outline.cell.any()) {
+      const SurfaceContact& contact = contacts_[row.contact];
+      faced = contact.image;
+      row.offset = -to_local(row.normal, (1 / outline.dt) * contact.image_motion);
+    }
+    row.offset[0] = dot(row.normal, row.velocity(outline.start.data()) - faced) / outline.dt;
   }
-  row.inverse_delassus = 1 / row.delassus;
-  row.offset[0] += contact.gap / outline.dt - relative_velocity(row)[0];
-  return row;
 }
 
 template <int Dim>
@@ -86,7 +115,7 @@ template <int Dim>
   const Vec<Dim> u = friction > 0 ? to_local(row.normal, v) + row.offset : Vec<Dim>{u_n};
   const double gain = row.inverse_delassus;
   const Vec<Dim> solved = solve_uncoupled(p, u, gain, gain, friction);
-  violation.add(row.delassus * (solved - p), solved[0]);
+  violation.add(row.delassus() * (solved - p), solved[0]);
   const Vec<Dim> next = relaxed_impulse(p, solved, friction, options.relaxation);
   const Vec<Dim> dp = next - p;
   p = next;

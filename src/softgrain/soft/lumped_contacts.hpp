@@ -36,7 +36,7 @@ class LumpedSystem {
   Mat<Dim> delassus_block(int contact) const {
     if (of_bodies_.has(contact)) return of_bodies_.delassus_block(contact);
     Vec<Dim> W;
-    for (int k = 0; k < Dim; ++k) W[k] = row(contact).delassus;
+    for (int k = 0; k < Dim; ++k) W[k] = row(contact).delassus();
     return Mat<Dim>::diagonal(W);
   }
   Vec<Dim> relative_velocity(int contact) const;
@@ -60,7 +60,8 @@ class LumpedSystem {
   using Row = LumpedRow<Dim>;
 
   const Row& row(int contact) const { return rows_[strips_.place[contact]]; }
-  Row row_of(const ContactOf<Dim>& contact, const OutlineStateOf<Dim>& outline) const;
+  void make_rows(const OutlineStateOf<Dim>& outline);
+  void set_offset(Row& row, const OutlineStateOf<Dim>& outline) const;
   Vec<Dim> velocity_of(const Row& row) const { return row.velocity(velocity_.data()); }
   Vec<Dim> relative_velocity(const Row& row) const;
   void apply_impulse(const Row& row, const Vec<Dim>& dp);
@@ -93,6 +94,8 @@ template <int Dim>
 struct LumpedSystem<Dim>::Scratch {
   std::vector<Row> rows;
   ContactStrips strips;
+  /// In space: rows and strips are those of the contacts already, which have not changed since the last system.
+  bool kept = false;
   std::vector<ScatteredVec<Dim>> velocity_before;  ///< of extrapolate
   std::vector<LumpedBodyOf<Dim>> body_before;
 };

@@ -21,7 +21,7 @@ struct LumpedRow<2> {
   std::array<double, 5> weight{};    // 1, -w_k; or w_k
   std::array<double, 5> mobility{};  // weight/m: velocity by a unit impulse
   Vec<2> normal, offset;
-  double delassus = 0, inverse_delassus = 0;
+  double W = 0, inverse_delassus = 0;
 
   LumpedRow() = default;
   LumpedRow(const OutlineContact& met, std::span<const double> inverse_mass) : normal(met.normal) {
@@ -30,10 +30,12 @@ struct LumpedRow<2> {
       vertex[count] = v;
       weight[count] = w;
       mobility[count] = w * inverse_mass[v];
-      delassus += w * mobility[count++];
+      W += w * mobility[count++];
     });
     vertices = static_cast<int>(count);
+    inverse_delassus = 1 / W;
   }
+  double delassus() const { return W; }
 
   /// sum weight v
   [[gnu::always_inline]] Vec<2> velocity(const Vec<2>* v) const {
@@ -52,18 +54,18 @@ struct LumpedRow<2> {
   }
 };
 
-// per contact and sweep: reads 290 B in the order of memory, and the velocities and masses of 16 vertices, or
-// none, and of those of the point, whose weights all grains of a shape share: 1, or 4 to 6 or 16 of a middle
+// per contact and sweep: reads 152 B in the order of memory, and the velocities and masses of 16 vertices, or
+// none, and of those of the point: 1, or 4 to 6 or 16 of a middle. Which they are all grains of a shape share.
 template <>
 struct LumpedRow<3> {
   int contact = 0;
-  int begin = 0;                      // the point; or the first vertex of the grain to which a middle belongs
-  const SurfacePoint* own = nullptr;  // this middle
-  bool faces = false;                 // a patch of another grain
-  std::array<int, 16> vertex{};       // of that
-  std::array<double, 16> weight{};
+  int wall = -1;                      // or -1
+  const SurfacePoint* own = nullptr;  // this middle, of the grain that begins at `begin`; or the point there
+  const PatchNet* patch = nullptr;    // of another grain, which begins at `facing_begin`; none at a wall
+  int begin = 0, facing_begin = 0;
+  PatchWeights weight{};
   Vec<3> normal, offset;
-  double delassus = 0, inverse_delassus = 0;
+  double inverse_delassus = 0;
 
   /// Asks for the row some turns ahead, which comes from far: the rows of hundreds of grains fill no cache.
   [[gnu::always_inline]] static void fetch_ahead(const LumpedRow* now) {
@@ -74,18 +76,23 @@ struct LumpedRow<3> {
 
   LumpedRow() = default;
   LumpedRow(const SurfaceContact& met, std::span<const double> inverse_mass)
-      : begin(met.own != nullptr ? met.own_begin : met.vertex),
+      : wall(met.wall),
         own(met.own),
-        faces(met.wall < 0),
-        vertex(met.master),
+        patch(met.patch),
+        begin(met.own != nullptr ? met.own_begin : met.vertex),
+        facing_begin(met.facing_begin),
         weight(met.weight),
         normal(met.normal) {
-    met.for_each_vertex([&](int v, double w) { delassus += w * w * inverse_mass[v]; });
+    double W = 0;
+    met.for_each_vertex([&](int v, double w) { W += w * w * inverse_mass[v]; });
+    inverse_delassus = 1 / W;
   }
+  double delassus() const { return 1 / inverse_delassus; }
 
+  /// sum weight v; with places it is the way from the patch to the point.
   [[gnu::always_inline]] Vec<3> velocity(const PaddedVec* v) const {
     Lanes u = own == nullptr ? load_lanes(v[begin]) : sum(own->count, own->vertex, own->weight, v + begin);
-    if (faces) u -= sum(16, vertex, weight, v);
+    if (patch != nullptr) u -= sum(16, patch->vertex, weight, v + facing_begin);
     return {u[0], u[1], u[2]};
   }
   [[gnu::always_inline]] void push(const Vec<3>& P, PaddedVec* v, const double* inverse_mass) const {
@@ -94,24 +101,26 @@ struct LumpedRow<3> {
       store_lanes(load_lanes(v[begin]) + inverse_mass[begin] * by, v[begin]);
     else
       push(own->count, own->vertex, own->weight, by, v + begin, inverse_mass + begin);
-    if (faces) push(16, vertex, weight, -by, v, inverse_mass);
+    if (patch != nullptr)
+      push(16, patch->vertex, weight, -by, v + facing_begin, inverse_mass + facing_begin);
   }
 
  private:
-  [[gnu::always_inline]] static Lanes sum(int count, const std::array<int, 16>& at,
-                                          const std::array<double, 16>& w, const PaddedVec* v) {
+  template <class Weights>
+  [[gnu::always_inline]] static Lanes sum(int count, const std::array<int, 16>& at, const Weights& w,
+                                          const PaddedVec* v) {
     Lanes even{}, odd{};
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); k += 2) {
-      even += w[k] * load_lanes(v[at[k]]);
-      odd += w[k + 1] * load_lanes(v[at[k + 1]]);
+      even += static_cast<double>(w[k]) * load_lanes(v[at[k]]);
+      odd += static_cast<double>(w[k + 1]) * load_lanes(v[at[k + 1]]);
     }
     return even + odd;
   }
-  [[gnu::always_inline]] static void push(int count, const std::array<int, 16>& at,
-                                          const std::array<double, 16>& w, Lanes P, PaddedVec* v,
-                                          const double* inverse_mass) {
+  template <class Weights>
+  [[gnu::always_inline]] static void push(int count, const std::array<int, 16>& at, const Weights& w, Lanes P,
+                                          PaddedVec* v, const double* inverse_mass) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
-      store_lanes(load_lanes(v[at[k]]) + (w[k] * inverse_mass[at[k]]) * P, v[at[k]]);
+      store_lanes(load_lanes(v[at[k]]) + (static_cast<double>(w[k]) * inverse_mass[at[k]]) * P, v[at[k]]);
   }
 };
 

@@ -43,6 +43,8 @@ struct OutlineContact {
     const Vec<2>&before = x[beside[0]], &after = x[beside[1]];
     return (1 - inward) * x[vertex] + ((inward - along) / 2) * before + ((inward + along) / 2) * after;
   }
+  /// One of the master's vertices.
+  int facing_vertex() const { return master[0]; }
   /// Weights of the master's vertices, if there is one.
   std::array<double, 4> weights() const { return curve_weights(share); }
   /// visit(vertex, weight) for all vertices that take part: dg = n . sum weight dx.

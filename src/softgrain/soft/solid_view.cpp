@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <variant>
@@ -97,6 +98,27 @@ std::vector<Skin> skin_of_rigid(const SolidGrains& grains, int grain, const Mat<
 
 constexpr std::size_t masters = 16, bodies_of_contact = 3 + masters;
 
+/// The patch that has these vertices, or the sphere at one of them. Raises IoError if there is none.
+void set_faced_patch(const SolidGrains& grains, const std::array<int, masters>& vertices,
+                     SurfaceContact& contact) {
+  contact.facing = grains.grain_of_vertex(vertices[0]);
+  const SolidTopology& shape = grains.topology(contact.facing);
+  if (shape.ball) {
+    contact.patch = &net_of_one_vertex;
+    contact.facing_begin = vertices[0];
+    return;
+  }
+  contact.facing_begin = grains.outline_begin(contact.facing);
+  for (const PatchNet& net : shape.patches) {
+    const auto is_there = [&](int vertex, int faced) { return contact.facing_begin + vertex == faced; };
+    if (std::equal(net.vertex.begin(), net.vertex.end(), vertices.begin(), is_there)) {
+      contact.patch = &net;
+      return;
+    }
+  }
+  throw IoError("the snapshot's array 'contact_bodies' holds a patch that its grain does not have");
+}
+
 }  // namespace
 
 std::vector<ContactPointOf<3>> contact_points(const SoftViewOf<3>& view) {
@@ -112,7 +134,7 @@ std::vector<ContactPointOf<3>> contact_points(const SoftViewOf<3>& view) {
       place -= grains.radius(g) * contact.normal;
     points.push_back(
         {.a = grains.grain_of_vertex(contact.vertex),
-         .b = contact.wall >= 0 ? wall_index(contact.wall) : grains.grain_of_vertex(contact.master[5]),
+         .b = contact.wall >= 0 ? wall_index(contact.wall) : contact.facing,
          .force = (-1 / view.impulse_time) * impulse_vector(contact, view.impulse[c]),
          .normal = Vec<3>{} - contact.normal,
          .position = place,
@@ -183,7 +205,8 @@ void visit_contacts(const SolidGrains& grains, int walls, bool repeats, std::vec
   std::vector<Vec<3>> images;
   for (const SurfaceContact& c : contacts) {
     bodies.insert(bodies.end(), {c.point, c.vertex, c.wall});
-    bodies.insert(bodies.end(), c.master.begin(), c.master.end());
+    for (std::size_t k = 0; k < masters; ++k)
+      bodies.push_back(c.wall < 0 ? c.facing_begin + c.patch->vertex[k] : 0);
     Vec<4 + masters> place{c.normal[0], c.normal[1], c.normal[2], c.gap};
     for (std::size_t k = 0; k < masters; ++k) place[static_cast<int>(4 + k)] = c.weight[k];
     places.push_back(place);
@@ -204,7 +227,7 @@ void visit_contacts(const SolidGrains& grains, int walls, bool repeats, std::vec
   for (std::size_t c = 0; c < places.size(); ++c) {
     const auto body = [&](std::size_t k) { return static_cast<int>(bodies[bodies_of_contact * c + k]); };
     const auto& place = places[c];
-    SurfaceContact contact{.point = body(0), .vertex = body(1)};
+    SurfaceContact contact{.point = body(0), .vertex = body(1), .grain = grains.grain_of_vertex(body(1))};
     if (contact.point >= grains.outline_size())
       contact = middles.point(contact.point - grains.outline_size());
     if (contact.vertex != body(1))
@@ -216,9 +239,13 @@ void visit_contacts(const SolidGrains& grains, int walls, bool repeats, std::vec
     contact.normal = {place[0], place[1], place[2]};
     contact.gap = place[3];
     if (repeats) contact.image = images[c];
-    for (std::size_t k = 0; k < masters; ++k) {
-      contact.master[k] = body(3 + k);
-      contact.weight[k] = place[static_cast<int>(4 + k)];
+    if (contact.wall < 0) {
+      std::array<int, masters> vertices;
+      std::array<double, masters> weights;
+      for (std::size_t k = 0; k < masters; ++k)
+        vertices[k] = body(3 + k), weights[k] = place[static_cast<int>(4 + k)];
+      set_faced_patch(grains, vertices, contact);
+      contact.weight = narrow_weights(weights);
     }
     contact.offset = offset_of(contact, grains);
     contacts.push_back(contact);

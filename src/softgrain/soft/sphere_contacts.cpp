@@ -29,14 +29,14 @@ Points points_of(const SolidGrains& grains, const OutlineStateOf<3>& state) {
     for (int v = shape.rigid() ? end - 1 : begin; v < end; ++v) {
       if (shape.rigid()) points.sphere.push_back(static_cast<int>(points.position.size()));
       points.position.push_back(state.position[v]);
-      points.contact.push_back({.point = v, .vertex = v});
+      points.contact.push_back({.point = v, .vertex = v, .grain = g});
     }
     if (shape.rigid()) points.largest = std::max(points.largest, grains.radius(g));
   }
   const Middles middles(grains);
   for (int i = 0; i < middles.size(); ++i) {
     const SurfaceContact middle = middles.point(i);
-    if (grains.topology(grains.grain_of_vertex(middle.vertex)).rigid()) continue;
+    if (grains.topology(middle.grain).rigid()) continue;
     points.position.push_back(place_of(middle, state.position));
     points.contact.push_back(middle);
   }
@@ -47,7 +47,7 @@ Points points_of(const SolidGrains& grains, const OutlineStateOf<3>& state) {
 void add_if_near(const SolidGrains& grains, const OutlineStateOf<3>& state, double margin,
                  SurfaceContact contact, std::vector<SurfaceContact>& contacts) {
   contact.offset = offset_of(contact, grains);
-  set_image(contact, contact.master[5], state);
+  set_image(contact, contact.facing_vertex(), state);
   Vec<3> d = Vec<3>{} - contact.image;
   contact.for_each_vertex([&](int v, double weight) { d += weight * state.position[v]; });
   const double distance = norm(d);
@@ -60,9 +60,11 @@ void add_if_near(const SolidGrains& grains, const OutlineStateOf<3>& state, doub
 /// Those of one sphere with a point beside it.
 void add_contact(const SolidGrains& grains, const OutlineStateOf<3>& state, double margin,
                  const SurfaceContact& sphere, SurfaceContact other, std::vector<SurfaceContact>& contacts) {
-  const bool both = grains.topology(grains.grain_of_vertex(other.vertex)).rigid();
+  const bool both = grains.topology(other.grain).rigid();
   if (both && other.vertex >= sphere.vertex) return;
-  other.master.fill(sphere.vertex);
+  other.facing = sphere.grain;
+  other.patch = &net_of_one_vertex;
+  other.facing_begin = sphere.vertex;
   other.weight[0] = 1;
   add_if_near(grains, state, margin, other, contacts);
 }
@@ -78,15 +80,15 @@ void add_sphere_contacts(const SolidGrains& grains, const OutlineStateOf<3>& sta
   const auto add = [&](int s, std::vector<SurfaceContact>& list) {
     const int i = points.sphere[s];
     SurfaceContact sphere = points.contact[i];
-    sphere.offset = grains.radius(grains.grain_of_vertex(sphere.vertex));
+    sphere.offset = grains.radius(sphere.grain);
     add_wall_contacts(state, sphere, margin, list);
     grid.for_each_neighbour(i, [&](int j, const Vec<3>&) {
       if (j != i) add_contact(grains, state, margin, sphere, points.contact[j], list);
     });
   };
   append_in_parallel(static_cast<int>(points.sphere.size()), spheres_at_once, contacts, add);
-  const auto order = [&](const SurfaceContact& c) {
-    return std::tuple(c.point, c.wall, c.wall < 0 ? facing_grain(c, grains) : 0);
+  const auto order = [](const SurfaceContact& c) {
+    return std::tuple(c.point, c.wall, c.facing);
   };
   const auto before = [&](const auto& a, const auto& b) { return order(a) < order(b); };
   std::sort(contacts.begin(), contacts.end(), before);

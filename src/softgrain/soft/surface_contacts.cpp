@@ -25,7 +25,7 @@ void add_contacts_of_sphere(const Surfaces& surfaces, double margin, int centre,
     int nearest = grains.outline_begin(g);
     for (int v = nearest; v < end; ++v)
       if (norm(way(v)) < norm(way(nearest))) nearest = v;
-    SurfaceContact contact = contact_with_patch(surfaces, {.point = centre, .vertex = centre},
+    SurfaceContact contact = contact_with_patch(surfaces, {.point = centre, .vertex = centre, .grain = grains.grain_of_vertex(centre)},
                                                 state.position[centre], g, nearest, R + margin);
     contact.offset = R;
     contact.gap -= R;
@@ -52,13 +52,13 @@ void add_contacts_of_vertex(const Surfaces& surfaces, const NearVertices& near, 
   if (grains.topology(own).ball && v + 1 == grains.outline_end(own))
     return add_contacts_of_sphere(surfaces, margin, v, contacts);
   if (is_of_surface(grains, v))
-    add_contacts_of_point(surfaces, margin, {.point = v, .vertex = v}, surfaces.state.position[v], near.of(v),
-                          contacts);
+    add_contacts_of_point(surfaces, margin, {.point = v, .vertex = v, .grain = own},
+                          surfaces.state.position[v], near.of(v), contacts);
 }
 
 void add_contacts_of_middle(const Surfaces& surfaces, const NearVertices& near, double margin,
                             const SurfaceContact& middle, std::vector<SurfaceContact>& contacts) {
-  const bool rigid = surfaces.grains.topology(surfaces.grains.grain_of_vertex(middle.vertex)).rigid();
+  const bool rigid = surfaces.grains.topology(middle.grain).rigid();
   if (!is_of_surface(surfaces.grains, middle.vertex) || (rigid && middle.own->of_edge())) return;
   thread_local std::vector<NearestVertex> of_middle;
   const Vec<3> x = place_of(middle, surfaces.state.position);
@@ -84,6 +84,7 @@ SurfaceContact Middles::point(int i) const {
   const int begin = grains_.outline_begin(grain);
   return {.point = grains_.outline_size() + i,
           .vertex = begin + middle.corner[0],
+          .grain = grain,
           .own = &middle,
           .own_begin = begin};
 }

@@ -22,17 +22,21 @@ struct SurfaceContact {
   int point = 0;
   int vertex = 0;                     ///< the point itself, or beside it
   int wall = -1;                      ///< or -1
+  int grain = 0;                      ///< whose point it is
+  int facing = -1;                    ///< the master, or -1 at a wall
   const SurfacePoint* own = nullptr;  ///< the middle, of the grain's shape; or none
   int own_begin = 0;                  ///< first outline vertex of that grain
-  /// vertices of the patch that it faces, with their weights
-  std::array<int, 16> master{};
-  std::array<double, 16> weight{};
+  int facing_begin = 0;               ///< first outline vertex of the master; of a sphere the one that it has
+  const PatchNet* patch = nullptr;    ///< that it faces, of the master's shape; none at a wall
+  PatchWeights weight{};              ///< of the patch's vertices
   Vec<3> normal{};        ///< unit, from the master or wall to the point
-  double gap = 0;         ///< [m], open > 0
+  double gap = 0;         ///< where the contact was found [m], open > 0
   double offset = 0;      ///< sum of the radii of the rigid spheres that take part [m]
   Vec<3> image{};         ///< from where the master is to where the point meets it, in a periodic cell [m]
   Vec<3> image_motion{};  ///< of that image against the master over the step [m]
 
+  /// One of the master's vertices at the patch.
+  int facing_vertex() const { return facing_begin + patch->vertex[PatchNet::corner[0]]; }
   /// visit(vertex, weight) for the vertices of the point: its place is sum weight x.
   template <class Visit>
   void for_each_own_vertex(Visit&& visit) const {
@@ -45,7 +49,7 @@ struct SurfaceContact {
   void for_each_facing_vertex(Visit&& visit) const {
     if (wall >= 0) return;
     for (std::size_t k = 0; k < 16; ++k)
-      if (weight[k] != 0) visit(master[k], -weight[k]);
+      if (weight[k] != 0) visit(facing_begin + patch->vertex[k], -static_cast<double>(weight[k]));
   }
   /// For all vertices that take part: dg = n . sum weight dx.
   template <class Visit>
@@ -85,13 +89,8 @@ Vec<3> place_of(const SurfaceContact& contact, std::span<const PaddedVec> x);
 /// Sum of the radii of the rigid spheres that take part in a contact [m].
 double offset_of(const SurfaceContact& contact, const SolidGrains& grains);
 
-/// The grain on the other side of a contact that has no wall.
-inline int facing_grain(const SurfaceContact& contact, const SolidGrains& grains) {
-  return grains.grain_of_vertex(contact.master[5]);
-}
-
-/// Brings the gap of a contact, and its image, up to where its vertices and the periodic cell are now.
-void update_gap(SurfaceContact& contact, const OutlineStateOf<3>& state);
+/// Brings the image of a contact up to where its vertices and the periodic cell are now.
+void update_image(SurfaceContact& contact, const OutlineStateOf<3>& state);
 
 /// Gap of a contact when its bodies have moved a little since it was found [m].
 double gap_now(const SurfaceContact& contact, const OutlineStateOf<3>& state);

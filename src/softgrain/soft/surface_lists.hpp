@@ -46,8 +46,9 @@ class ImagedGrid {
 
 /// Takes over the net's vertices with their weights at (u, v).
 inline void set_master(SurfaceContact& contact, const PatchNet& net, int first_vertex, double u, double v) {
-  contact.weight = patch_weights(net, u, v);
-  for (std::size_t k = 0; k < 16; ++k) contact.master[k] = first_vertex + net.vertex[k];
+  contact.patch = &net;
+  contact.facing_begin = first_vertex;
+  contact.weight = narrow_weights(patch_weights(net, u, v));
 }
 
 /// The image of the vertex `nearest` that the point `vertex` meets.
@@ -65,7 +66,7 @@ inline void add_wall_contacts(const OutlineStateOf<3>& state, SurfaceContact con
     if (state.walls[w].open) continue;
     contact.wall = w;
     contact.normal = state.walls[w].normal;
-    update_gap(contact, state);
+    contact.gap = gap_now(contact, state);
     if (contact.gap < margin) contacts.push_back(contact);
   }
 }

@@ -27,13 +27,12 @@ double offset_of(const SurfaceContact& contact, const SolidGrains& grains) {
     if (grains.topology(grain).ball) sum += grains.radius(grain);
   };
   add(contact.vertex);
-  if (contact.wall < 0) add(contact.master[5]);
+  if (contact.wall < 0) add(contact.facing_vertex());
   return sum;
 }
 
-void update_gap(SurfaceContact& contact, const OutlineStateOf<3>& state) {
-  if (contact.wall < 0) set_image(contact, contact.master[5], state);
-  contact.gap = gap_now(contact, state);
+void update_image(SurfaceContact& contact, const OutlineStateOf<3>& state) {
+  if (contact.wall < 0) set_image(contact, contact.facing_vertex(), state);
 }
 
 Vec<3> relative_displacement(const SurfaceContact& contact, const OutlineStateOf<3>& state) {
@@ -45,17 +44,17 @@ Vec<3> relative_displacement(const SurfaceContact& contact, const OutlineStateOf
   Vec<3> displacement = first_three(sum);
   if (contact.offset > 0) {  // omega x (-R n) of either side
     displacement -= cross(state.rolled[contact.vertex], contact.normal);
-    if (contact.wall < 0) displacement -= cross(state.rolled[contact.master[5]], contact.normal);
+    if (contact.wall < 0) displacement -= cross(state.rolled[contact.facing_vertex()], contact.normal);
   }
   return displacement;
 }
 
-std::vector<Vec<3>> carried_impulses(const SolidGrains& grains, std::span<const SurfaceContact> old,
+std::vector<Vec<3>> carried_impulses(const SolidGrains& /*grains*/, std::span<const SurfaceContact> old,
                                      std::span<const Vec<3>> old_impulse,
                                      std::span<const SurfaceContact> contacts) {
   return carry_impulses(
       old, old_impulse, contacts, [](const SurfaceContact& c) { return c.point; },
-      [&](const SurfaceContact& c) { return facing_grain(c, grains); },
+      [](const SurfaceContact& c) { return c.facing; },
       [](const SurfaceContact& was, const Vec<3>& impulse, const SurfaceContact& now) {
         return to_local(now.normal, impulse_vector(was, impulse));
       });

@@ -134,6 +134,21 @@ std::array<double, 16> patch_weights(const PatchNet& net, double u, double v) {
   return weights;
 }
 
+PatchWeights narrow_weights(const std::array<double, 16>& weights) {
+  constexpr double unit = 0x1p-23;
+  PatchWeights narrow;
+  double rest = 1;  // exact, as all are multiples of the unit
+  std::size_t largest = 0;
+  for (std::size_t k = 0; k < 16; ++k) {
+    const double rounded = unit * std::nearbyint(weights[k] / unit);
+    narrow[k] = static_cast<float>(rounded);
+    rest -= rounded;
+    if (weights[k] > weights[largest]) largest = k;
+  }
+  narrow[largest] += static_cast<float>(rest);
+  return narrow;
+}
+
 std::vector<SurfacePoint> middles_of(std::span<const PatchNet> patches) {
   std::vector<SurfacePoint> middles;
   std::map<std::pair<int, int>, SurfacePoint> of_edge;

@@ -37,6 +37,15 @@ std::vector<PatchNet> patch_nets(std::span<const std::array<int, 4>> quads,
 /// Weights of the net's vertices in c(u, v); they add up to 1.
 std::array<double, 16> patch_weights(const PatchNet& net, double u, double v);
 
+/// Weights of a contact, which every sweep reads: half as long.
+using PatchWeights = std::array<float, 16>;
+/// The same in multiples of 2^-23, which single precision holds, and they add up to 1 to the last digit: what
+/// all vertices do together still moves the place as much. |weight| < 2.
+PatchWeights narrow_weights(const std::array<double, 16>& weights);
+
+/// The net of a point that has one vertex, the first, as a rigid sphere has.
+inline constexpr PatchNet net_of_one_vertex{};
+
 /// A point of the outline between its vertices: at sum weight x of the first `count`, which is even.
 struct SurfacePoint {
   std::array<int, 16> vertex{};

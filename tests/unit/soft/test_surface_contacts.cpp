@@ -122,7 +122,7 @@ TEST_CASE(
   for (const SurfaceContact& contact : contacts) {
     ++(contact.own == nullptr ? vertices : contact.own->of_edge() ? of_edges : of_patches);
     CHECK(two.grains.grain_of_vertex(contact.vertex) == 0);
-    CHECK(facing_grain(contact, two.grains) == 1);
+    CHECK(contact.facing == 1);
     const Vec<3> centre{0, 0, 1.96};  // of the master
     const Vec<3> d = place_of(contact, two.state.position) - centre;
     CHECK(contact.gap == doctest::Approx(norm(d) - 1).epsilon(0.006));  // of a smooth outline of 98 vertices
