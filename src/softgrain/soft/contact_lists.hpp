@@ -20,7 +20,7 @@ void visit_contact_lists(StateVisitor& visit, std::vector<std::int64_t>& bodies,
       bodies, bodies_of_contact);
   visit.list(
       {"contact_places", "", Owner::contact, Role::start,
-       "share, normal (2), gap [m], slip [m]; in space normal (3), gap [m], weights of the patch (16)"},
+       "share, normal (2), gap [m], slip [m]; in space normal (3), gap found [m], weights of the patch (16)"},
       places);
 }
 

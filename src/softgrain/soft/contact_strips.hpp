@@ -18,8 +18,8 @@ struct ContactStrips {
 
   int count() const { return static_cast<int>(begin.size()) - 1; }
 
-  std::vector<int> order;     ///< (contacts) strip by strip, as in the list within each; in space within a grain
-  std::vector<int> place;     ///< (contacts) of each contact in `order`
+  std::vector<int> order;  ///< (contacts) strip by strip, as in the list within each; in space within a grain
+  std::vector<int> place;  ///< (contacts) of each contact in `order`
   std::vector<int> begin{0};  ///< (strips + 1) where in `order` each begins
 
  private:

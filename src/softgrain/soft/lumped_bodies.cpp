@@ -48,7 +48,8 @@ BodyContacts<Dim>::BodyContacts(std::span<const ContactOf<Dim>> contacts, const 
   row_of_.assign(contacts.size(), -1);
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const ContactOf<Dim>& contact = contacts[c];
-    if (bodies.at(contact.vertex) < 0 && (contact.wall >= 0 || bodies.at(contact.facing_vertex()) < 0)) continue;
+    if (bodies.at(contact.vertex) < 0 && (contact.wall >= 0 || bodies.at(contact.facing_vertex()) < 0))
+      continue;
     row_of_[c] = static_cast<int>(rows_.size());
     contact_.push_back(static_cast<int>(c));
     rows_.push_back(make_row(contact, outline, inverse_mass));

@@ -1,10 +1,22 @@
 #include "softgrain/soft/lumped_contacts.hpp"
 
+#include <algorithm>
+#include <limits>
+#include <utility>
+
 #include "softgrain/contact/law.hpp"
 #include "softgrain/contact/nlgs.hpp"
 #include "softgrain/core/parallel.hpp"
 
 namespace softgrain {
+namespace {
+
+/// A contact is wide open if u_n is so many times the tolerance of sweeps.
+constexpr double wide_open = 16;
+constexpr double never =
+    std::numeric_limits<double>::infinity();  // where it is not known what a sweep must reach
+
+}  // namespace
 
 template <int Dim>
 inline Vec<Dim> LumpedSystem<Dim>::relative_velocity(const Row& row) const {
@@ -104,45 +116,120 @@ void LumpedSystem<Dim>::apply_impulses(std::span<const Vec<Dim>> impulse) {
     if (!(impulse[c] == Vec<Dim>{})) of_bodies_.apply_impulse(c, impulse[c]);
 }
 
-/// Puts one contact right, and adds the violation that it showed.
+/// Puts one contact right, and adds the violation that it showed. Returns u_n where it is open, else -1.
 template <int Dim>
-[[gnu::always_inline]] inline void LumpedSystem<Dim>::solve(const Row& row, Vec<Dim>& p, double friction,
-                                                            const SolverOptions& options,
-                                                            Violation& violation) {
+[[gnu::always_inline]] inline double LumpedSystem<Dim>::solve(const Row& row, Vec<Dim>& p, double friction,
+                                                              const SolverOptions& options,
+                                                              Violation& violation) {
   const Vec<Dim> v = velocity_of(row);
   const double u_n = dot(row.normal, v) + row.offset[0];
-  if (p[0] == 0 && u_n >= 0) return;
-  const Vec<Dim> u = friction > 0 ? to_local(row.normal, v) + row.offset : Vec<Dim>{u_n};
+  if (p[0] == 0 && u_n >= 0) return u_n;
   const double gain = row.inverse_delassus;
+  if (Dim == 3 && friction == 0 && p[1] == 0 && p[Dim - 1] == 0) {
+    const double jump = normal_impulse(p[0], u_n, gain) - p[0];
+    violation.add(Vec<1>{row.delassus() * jump}, p[0] + jump);
+    const double next = std::max(0.0, p[0] + options.relaxation * jump);
+    row.push((next - p[0]) * row.normal, velocity_.data(), inverse_mass_.data());
+    p[0] = next;
+    return -1;
+  }
+  const Vec<Dim> u = friction > 0 ? to_local(row.normal, v) + row.offset : Vec<Dim>{u_n};
   const Vec<Dim> solved = solve_uncoupled(p, u, gain, gain, friction);
   violation.add(row.delassus() * (solved - p), solved[0]);
   const Vec<Dim> next = relaxed_impulse(p, solved, friction, options.relaxation);
   const Vec<Dim> dp = next - p;
   p = next;
   apply_impulse(row, dp);
+  return -1;
 }
 
 template <int Dim>
-Violation LumpedSystem<Dim>::sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
-                                   const SolverOptions& options) {
+struct LumpedSystem<Dim>::Sweep {
+  std::span<Vec<Dim>> impulse;
+  std::span<const double> friction;
+  const SolverOptions& options;
+};
+
+template <int Dim>
+void LumpedSystem<Dim>::sweep_strip(int strip, const Sweep& sweep, Violation& violation) {
+  const auto turn = [&](const Row& row) {
+    const int c = row.contact;
+    solve(row, sweep.impulse[c], sweep.friction[c], sweep.options, violation);
+  };
+  if constexpr (Dim == 3) {
+    const int end = scratch_.busy_end[strip];
+    for (int k = strips_.begin[strip]; k < end; ++k) {
+      Row::fetch(rows_[scratch_.turn[std::min(k + Row::turns_ahead, end - 1)]]);
+      turn(rows_[scratch_.turn[k]]);
+    }
+  } else {
+    for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
+      const int c = rows_[k].contact;
+      if (!(pushed_ && pushed_->has(c)) && !of_bodies_.has(c)) turn(rows_[k]);
+    }
+  }
+}
+
+/// The first sweep over a strip, which finds the rows that are wide open.
+template <int Dim>
+void LumpedSystem<Dim>::sort_by_need(int strip, const Sweep& sweep, Violation& violation) {
+  const double scale = sweep.options.velocity_scale;
+  const double wide = scale > 0 ? wide_open * sweep.options.tolerance * scale : never;
+  int busy = strips_.begin[strip], open = strips_.begin[strip + 1];
+  for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
+    const int c = rows_[k].contact;
+    if ((pushed_ && pushed_->has(c)) || of_bodies_.has(c)) continue;
+    const double u_n = solve(rows_[k], sweep.impulse[c], sweep.friction[c], sweep.options, violation);
+    (u_n > wide ? scratch_.turn[--open] : scratch_.turn[busy++]) = k;
+  }
+  scratch_.busy_end[strip] = busy, scratch_.open_begin[strip] = open;
+}
+
+/// Those of a strip that have had no turn since the first sweep.
+template <int Dim>
+void LumpedSystem<Dim>::look_at_open(int strip, const Sweep& sweep, Violation& violation) {
+  int &busy = scratch_.busy_end[strip], &open = scratch_.open_begin[strip];
+  for (int k = open; k < strips_.begin[strip + 1]; ++k) {
+    const int at = scratch_.turn[k], c = rows_[at].contact;
+    if (solve(rows_[at], sweep.impulse[c], sweep.friction[c], sweep.options, violation) >= 0) continue;
+    std::swap(scratch_.turn[k], scratch_.turn[open++]);
+    scratch_.turn[busy++] = at;
+  }
+}
+
+/// The violation that work(strip, violation) adds up for all strips.
+template <int Dim>
+Violation LumpedSystem<Dim>::sweep_strips(const std::function<void(int strip, Violation& violation)>& work) {
   std::vector<Violation> of_strip(strips_.count());
   for_each_strip([&](int strip) {
     Violation sum;
-    for (int k = strips_.begin[strip]; k < strips_.begin[strip + 1]; ++k) {
-      if constexpr (Dim == 3) Row::fetch_ahead(&rows_[k]);
-      const int c = rows_[k].contact;
-      if ((pushed_ && pushed_->has(c)) || of_bodies_.has(c)) continue;
-      solve(rows_[k], impulse[c], friction[c], options, sum);
-    }
+    work(strip, sum);
     of_strip[strip] = sum;
   });
   row_of_strips_.tell(strips_.count(), [&](int strip, Message& message) { message(of_strip[strip]); });
   Violation violation;
   for (const Violation& of_one : of_strip) violation += of_one;
+  return violation;
+}
+
+template <int Dim>
+Violation LumpedSystem<Dim>::sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
+                                   const SolverOptions& options) {
+  const Sweep sweep{impulse, friction, options};
+  const bool first = Dim == 3 && !std::exchange(sorted_by_need_, true);
+  if (first) {
+    scratch_.turn.resize(rows_.size());
+    scratch_.busy_end.resize(strips_.count()), scratch_.open_begin.resize(strips_.count());
+  }
+  Violation violation = sweep_strips([&](int strip, Violation& sum) {
+    first ? sort_by_need(strip, sweep, sum) : sweep_strip(strip, sweep, sum);
+  });
   for (const int c : of_bodies_.contacts())
     if (!(pushed_ && pushed_->has(c)))
       nlgs_update<Dim>(*this, c, impulse[c], friction[c], options.relaxation, violation);
   if (pushed_) pushed_->template sweep<Dim>(*this, impulse, friction, options.relaxation, violation);
+  if (Dim == 3 && !first && report_of(violation, 1, options.velocity_scale, options).converged)
+    violation += sweep_strips([&](int strip, Violation& sum) { look_at_open(strip, sweep, sum); });
   return violation;
 }
 

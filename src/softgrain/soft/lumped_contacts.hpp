@@ -47,6 +47,8 @@ class LumpedSystem {
   /// rigid bodies, those of pushed bodies last. Where W is a multiple of 1, a
   /// contact is solved by
   ///   p_n = max(0, p_n - u_n/W),  p_t = p_t - u_t/W, cut to |p_t| <= mu p_n.
+  /// In space contacts that the first sweep finds wide open have their next turns only in sweeps that would
+  /// be the last; those that have closed by then have all turns that follow.
   Violation sweep(std::span<Vec<Dim>> impulse, std::span<const double> friction,
                   const SolverOptions& options);
   /// Velocities go ahead as impulses do (Extrapolation).
@@ -65,8 +67,13 @@ class LumpedSystem {
   Vec<Dim> velocity_of(const Row& row) const { return row.velocity(velocity_.data()); }
   Vec<Dim> relative_velocity(const Row& row) const;
   void apply_impulse(const Row& row, const Vec<Dim>& dp);
-  void solve(const Row& row, Vec<Dim>& p, double friction, const SolverOptions& options,
-             Violation& violation);
+  double solve(const Row& row, Vec<Dim>& p, double friction, const SolverOptions& options,
+               Violation& violation);
+  struct Sweep;
+  void sweep_strip(int strip, const Sweep& sweep, Violation& violation);
+  void sort_by_need(int strip, const Sweep& sweep, Violation& violation);
+  void look_at_open(int strip, const Sweep& sweep, Violation& violation);
+  Violation sweep_strips(const std::function<void(int strip, Violation& violation)>& work);
   // no templates, so that the law is compiled into the sweeps (decision 0072)
   void for_each_strip(const std::function<void(int strip)>& work);
   void for_each_own_strip(const std::function<void(int strip)>& work) const;
@@ -85,6 +92,7 @@ class LumpedSystem {
   LumpedBodiesOf<Dim>& bodies_;
   BodyContacts<Dim> of_bodies_;
   PushedBodies* pushed_ = nullptr;
+  bool sorted_by_need_ = false;
 };
 
 using LumpedContacts = LumpedSystem<2>;
@@ -94,8 +102,13 @@ template <int Dim>
 struct LumpedSystem<Dim>::Scratch {
   std::vector<Row> rows;
   ContactStrips strips;
-  /// In space: rows and strips are those of the contacts already, which have not changed since the last system.
+  /// In space: rows and strips are those of the contacts already, which have not changed since the last
+  /// system.
   bool kept = false;
+  /// (contacts) rows strip by strip: of each first those that have their turn in every sweep, at the end
+  /// those that are wide open
+  std::vector<int> turn;
+  std::vector<int> busy_end, open_begin;           ///< (strips) in `turn`
   std::vector<ScatteredVec<Dim>> velocity_before;  ///< of extrapolate
   std::vector<LumpedBodyOf<Dim>> body_before;
 };

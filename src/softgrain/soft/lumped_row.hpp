@@ -4,6 +4,7 @@
 
 #include "softgrain/math/padded_vec.hpp"
 #include "softgrain/soft/contact_of.hpp"
+#include "softgrain/soft/surface_sum.hpp"
 
 namespace softgrain {
 
@@ -55,7 +56,8 @@ struct LumpedRow<2> {
 };
 
 // per contact and sweep: reads 152 B in the order of memory, and the velocities and masses of 16 vertices, or
-// none, and of those of the point: 1, or 4 to 6 or 16 of a middle. Which they are all grains of a shape share.
+// none, and of those of the point: 1, or 4 to 6 or 16 of a middle. Which they are all grains of a shape
+// share.
 template <>
 struct LumpedRow<3> {
   int contact = 0;
@@ -67,11 +69,13 @@ struct LumpedRow<3> {
   Vec<3> normal, offset;
   double inverse_delassus = 0;
 
-  /// Asks for the row some turns ahead, which comes from far: the rows of hundreds of grains fill no cache.
-  [[gnu::always_inline]] static void fetch_ahead(const LumpedRow* now) {
-    constexpr std::size_t turns = 4, line = 64;
+  /// Asks for a row whose turn is some turns ahead, since it comes from far: the rows of hundreds of grains
+  /// fill no cache.
+  static constexpr int turns_ahead = 4;
+  [[gnu::always_inline]] static void fetch(const LumpedRow& row) {
+    constexpr std::size_t line = 64;
     for (std::size_t at = 0; at < sizeof(LumpedRow); at += line)
-      __builtin_prefetch(reinterpret_cast<const char*>(now + turns) + at);
+      __builtin_prefetch(reinterpret_cast<const char*>(&row) + at);
   }
 
   LumpedRow() = default;
@@ -91,9 +95,8 @@ struct LumpedRow<3> {
 
   /// sum weight v; with places it is the way from the patch to the point.
   [[gnu::always_inline]] Vec<3> velocity(const PaddedVec* v) const {
-    Lanes u = own == nullptr ? load_lanes(v[begin]) : sum(own->count, own->vertex, own->weight, v + begin);
-    if (patch != nullptr) u -= sum(16, patch->vertex, weight, v + facing_begin);
-    return {u[0], u[1], u[2]};
+    return first_three(point_less_patch(own, begin, patch, facing_begin, weight,
+                                        [v](int vertex) { return load_lanes(v[vertex]); }));
   }
   [[gnu::always_inline]] void push(const Vec<3>& P, PaddedVec* v, const double* inverse_mass) const {
     const Lanes by{P[0], P[1], P[2], 0};
@@ -101,21 +104,10 @@ struct LumpedRow<3> {
       store_lanes(load_lanes(v[begin]) + inverse_mass[begin] * by, v[begin]);
     else
       push(own->count, own->vertex, own->weight, by, v + begin, inverse_mass + begin);
-    if (patch != nullptr)
-      push(16, patch->vertex, weight, -by, v + facing_begin, inverse_mass + facing_begin);
+    if (patch != nullptr) push(16, patch->vertex, weight, -by, v + facing_begin, inverse_mass + facing_begin);
   }
 
  private:
-  template <class Weights>
-  [[gnu::always_inline]] static Lanes sum(int count, const std::array<int, 16>& at, const Weights& w,
-                                          const PaddedVec* v) {
-    Lanes even{}, odd{};
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count); k += 2) {
-      even += static_cast<double>(w[k]) * load_lanes(v[at[k]]);
-      odd += static_cast<double>(w[k + 1]) * load_lanes(v[at[k + 1]]);
-    }
-    return even + odd;
-  }
   template <class Weights>
   [[gnu::always_inline]] static void push(int count, const std::array<int, 16>& at, const Weights& w, Lanes P,
                                           PaddedVec* v, const double* inverse_mass) {

@@ -132,13 +132,12 @@ std::vector<ContactPointOf<3>> contact_points(const SoftViewOf<3>& view) {
     Vec<3> place = place_of(contact, x);
     if (const int g = grains.grain_of_vertex(contact.vertex); grains.topology(g).ball)
       place -= grains.radius(g) * contact.normal;
-    points.push_back(
-        {.a = grains.grain_of_vertex(contact.vertex),
-         .b = contact.wall >= 0 ? wall_index(contact.wall) : contact.facing,
-         .force = (-1 / view.impulse_time) * impulse_vector(contact, view.impulse[c]),
-         .normal = Vec<3>{} - contact.normal,
-         .position = place,
-         .image = contact.image});
+    points.push_back({.a = grains.grain_of_vertex(contact.vertex),
+                      .b = contact.wall >= 0 ? wall_index(contact.wall) : contact.facing,
+                      .force = (-1 / view.impulse_time) * impulse_vector(contact, view.impulse[c]),
+                      .normal = Vec<3>{} - contact.normal,
+                      .position = place,
+                      .image = contact.image});
   }
   return points;
 }

@@ -87,9 +87,7 @@ void add_sphere_contacts(const SolidGrains& grains, const OutlineStateOf<3>& sta
     });
   };
   append_in_parallel(static_cast<int>(points.sphere.size()), spheres_at_once, contacts, add);
-  const auto order = [](const SurfaceContact& c) {
-    return std::tuple(c.point, c.wall, c.facing);
-  };
+  const auto order = [](const SurfaceContact& c) { return std::tuple(c.point, c.wall, c.facing); };
   const auto before = [&](const auto& a, const auto& b) { return order(a) < order(b); };
   std::sort(contacts.begin(), contacts.end(), before);
   const auto same = [&](const auto& a, const auto& b) { return order(a) == order(b); };

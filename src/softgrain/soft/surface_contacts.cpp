@@ -25,8 +25,9 @@ void add_contacts_of_sphere(const Surfaces& surfaces, double margin, int centre,
     int nearest = grains.outline_begin(g);
     for (int v = nearest; v < end; ++v)
       if (norm(way(v)) < norm(way(nearest))) nearest = v;
-    SurfaceContact contact = contact_with_patch(surfaces, {.point = centre, .vertex = centre, .grain = grains.grain_of_vertex(centre)},
-                                                state.position[centre], g, nearest, R + margin);
+    SurfaceContact contact = contact_with_patch(
+        surfaces, {.point = centre, .vertex = centre, .grain = grains.grain_of_vertex(centre)},
+        state.position[centre], g, nearest, R + margin);
     contact.offset = R;
     contact.gap -= R;
     if (contact.gap < margin) contacts.push_back(contact);

@@ -29,9 +29,9 @@ struct SurfaceContact {
   int facing_begin = 0;               ///< first outline vertex of the master; of a sphere the one that it has
   const PatchNet* patch = nullptr;    ///< that it faces, of the master's shape; none at a wall
   PatchWeights weight{};              ///< of the patch's vertices
-  Vec<3> normal{};        ///< unit, from the master or wall to the point
-  double gap = 0;         ///< where the contact was found [m], open > 0
-  double offset = 0;      ///< sum of the radii of the rigid spheres that take part [m]
+  Vec<3> normal{};                    ///< unit, from the master or wall to the point
+  double gap = 0;                     ///< where the contact was found [m], open > 0
+  double offset = 0;                  ///< sum of the radii of the rigid spheres that take part [m]
   Vec<3> image{};         ///< from where the master is to where the point meets it, in a periodic cell [m]
   Vec<3> image_motion{};  ///< of that image against the master over the step [m]
 

@@ -1,10 +1,21 @@
 #include "softgrain/soft/carried_impulses.hpp"
 #include "softgrain/soft/surface_contacts.hpp"
 #include "softgrain/soft/surface_lists.hpp"
+#include "softgrain/soft/surface_sum.hpp"
 
 // What a contact in space that was found says once its bodies have moved.
 
 namespace softgrain {
+namespace {
+
+/// A value of vertices at the point of a contact, less that at the patch that it faces.
+template <class Value>
+[[gnu::always_inline]] inline Lanes at_point(const Value& value, const SurfaceContact& contact) {
+  return point_less_patch(contact.own, contact.own == nullptr ? contact.vertex : contact.own_begin,
+                          contact.patch, contact.facing_begin, contact.weight, value);
+}
+
+}  // namespace
 
 Vec<3> place_of(const SurfaceContact& contact, std::span<const PaddedVec> x) {
   if (contact.own == nullptr) return x[contact.vertex];
@@ -14,9 +25,9 @@ Vec<3> place_of(const SurfaceContact& contact, std::span<const PaddedVec> x) {
 }
 
 double gap_now(const SurfaceContact& contact, const OutlineStateOf<3>& state) {
-  Lanes apart = Lanes{} - load_lanes(contact.image);
+  Lanes apart =
+      at_point([&](int v) { return load_lanes(state.position[v]); }, contact) - load_lanes(contact.image);
   if (contact.wall >= 0) apart -= load_lanes(state.walls[contact.wall].point);
-  contact.for_each_vertex([&](int v, double weight) { apart += weight * load_lanes(state.position[v]); });
   return dot(first_three(apart), contact.normal) - contact.offset;
 }
 
@@ -36,11 +47,10 @@ void update_image(SurfaceContact& contact, const OutlineStateOf<3>& state) {
 }
 
 Vec<3> relative_displacement(const SurfaceContact& contact, const OutlineStateOf<3>& state) {
-  Lanes sum = Lanes{} - load_lanes(contact.image_motion);
+  Lanes sum =
+      at_point([&](int v) { return load_lanes(state.position[v]) - load_lanes(state.start[v]); }, contact) -
+      load_lanes(contact.image_motion);
   if (contact.wall >= 0) sum -= load_lanes(state.dt * state.walls[contact.wall].velocity);
-  contact.for_each_vertex([&](int v, double weight) {
-    sum += weight * (load_lanes(state.position[v]) - load_lanes(state.start[v]));
-  });
   Vec<3> displacement = first_three(sum);
   if (contact.offset > 0) {  // omega x (-R n) of either side
     displacement -= cross(state.rolled[contact.vertex], contact.normal);
