@@ -13,8 +13,8 @@ namespace {
 
 /// A contact is wide open if u_n is so many times the tolerance of sweeps.
 constexpr double wide_open = 16;
-constexpr double never =
-    std::numeric_limits<double>::infinity();  // where it is not known what a sweep must reach
+/// Where it is not known what sweeps must reach.
+constexpr double never = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -128,7 +128,7 @@ template <int Dim>
   if (Dim == 3 && friction == 0 && p[1] == 0 && p[Dim - 1] == 0) {
     const double jump = normal_impulse(p[0], u_n, gain) - p[0];
     violation.add(Vec<1>{row.delassus() * jump}, p[0] + jump);
-    const double next = std::max(0.0, p[0] + options.relaxation * jump);
+    const double next = normal_impulse(p[0], u_n, options.relaxation * gain);
     row.push((next - p[0]) * row.normal, velocity_.data(), inverse_mass_.data());
     p[0] = next;
     return -1;

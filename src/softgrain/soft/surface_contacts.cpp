@@ -42,7 +42,10 @@ void add_contacts_of_point(const Surfaces& surfaces, double margin, const Surfac
   for (const NearestVertex& nearest : near) {
     const SurfaceContact contact =
         contact_with_patch(surfaces, point, x, nearest.grain, nearest.vertex, margin + surfaces.reach / 2);
-    if (contact.gap < margin) contacts.push_back(contact);
+    if (!(contact.gap < margin)) continue;
+    contacts.push_back(contact);
+    if (!surfaces.grains.topology(nearest.grain).rigid_shape())
+      contacts.back().gap = gap_now(contact, surfaces.state);  // with the weights that it keeps
   }
 }
 
