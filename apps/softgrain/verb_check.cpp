@@ -33,6 +33,14 @@ std::vector<std::string> notes_of(const CaseReading& reading) {
           fmt::format("note: {}: repeat has no effect, as the first turn leads to its end; give "
                       "until.time, or repeat_from a stage that leads back",
                       stages[number].title(number)));
+  const Case::Box& box = reading.the_case.box;
+  const bool falls = box.gravity_x != 0 || box.gravity_y != 0 || box.gravity_z != 0;
+  for (std::size_t number = 0; number < stages.size() && falls && is_bonded(reading.the_case); ++number)
+    if (stages[number].until.rest)
+      notes.push_back(
+          fmt::format("note: {}: bonded grains store so much by their attraction that a fall counts as rest; "
+                      "end it by until.time alone",
+                      stages[number].title(number)));
   if (!is_elastic(reading.the_case)) return notes;
   const std::string_view caution = law_choice(reading.the_case.mpm.law).caution;
   if (!caution.empty()) notes.push_back(fmt::format("note: mpm.law: {}", caution));
@@ -154,8 +162,11 @@ void print_advice(const Advice& advice, double newton_tolerance) {
   fmt::print(stderr, "time step {}", text(advice.time_step, "s"));
   if (std::isfinite(advice.longest_step))
     fmt::print(stderr, ", {:.2g} of the longest stable one", advice.time_step / advice.longest_step);
-  fmt::print(stderr, "\ninertial number about {:.1e} at {}, {}\n", advice.inertial_number,
-             text(advice.stress, "Pa"), word_for(advice.inertial_number));
+  if (advice.inertial_number > 0)
+    fmt::print(stderr, "\ninertial number about {:.1e} at {}, {}\n", advice.inertial_number,
+               text(advice.stress, "Pa"), word_for(advice.inertial_number));
+  else
+    fmt::print(stderr, "\ninertial number 0: no wall moves\n");
   if (advice.blow > most_of_a_blow)
     fmt::print(stderr,
                "warning: walls at this speed strike with rho c v = {:.2g} times the yield stress, and points "

@@ -125,6 +125,17 @@ TEST_CASE("check refuses what run would refuse, with the same words") {
   }
 }
 
+TEST_CASE("check says that bonded grains that fall are taken to rest") {
+  const Workshop workshop;
+  const std::string settle =
+      "experiment.model = 'bpm'\nsample.grains = 4\nbpm.primaries = 20\n"
+      "[[stage]]\nuntil = { rest = 1e-4, time = '1 ms' }\n";
+  workshop.file("still.toml", settle);
+  workshop.file("falls.toml", "box.gravity_y = -9.81\n" + settle);
+  CHECK(mentions(workshop.softgrain({"check", "falls.toml"}).err, "a fall counts as rest"));
+  CHECK_FALSE(mentions(workshop.softgrain({"check", "still.toml"}).err, "a fall counts as rest"));
+}
+
 TEST_CASE("check says that a stage that is repeated alone ends where its first turn did") {
   const Workshop workshop;
   const std::string press = "[[stage]]\nname = 'press'\nyy.velocity = '1 m/s'\nuntil.strain = 0.1\n",

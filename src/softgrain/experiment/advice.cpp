@@ -125,7 +125,7 @@ Advice advise(const Case& c) {
   advice.time_step = first_time_step(c);
   advice.longest_step = is_bonded(c) ? critical_bond_step(c) : longest_time_step(c);
   advice.stress = stress_of(c);
-  const double rate = c.loading.wall_velocity / height_of(c);
+  const double rate = fastest_rate(c, height_of(c));
   if (std::isinf(advice.stress)) {  // of rigid grains that no stress presses: that of their inertia
     advice.stress = density_of(c) * c.loading.wall_velocity * c.loading.wall_velocity;
     advice.inertial_number = rate * diameter_of(c) / c.loading.wall_velocity;

@@ -203,14 +203,12 @@ void SimulationOf<Dim>::begin_row() {
   model_->begin_row();
 }
 
-/// The largest of the strain rates [1/s], by which inertia is measured.
+/// The largest of the strain rates of all axes, and of shear [1/s], by which inertia is measured.
 template <int Dim>
 double SimulationOf<Dim>::largest_rate() const {
-  if (!box_.cell.any()) return box_.strain_rate(Dim - 1);
-  double largest = 0;
-  const Mat<Dim> L = box_.cell.gradient();
+  double largest = box_.cell.any() ? std::abs(box_.cell.gradient()(0, 1)) : 0;
   for (int axis = 0; axis < Dim; ++axis) largest = std::max(largest, std::abs(box_.strain_rate(axis)));
-  return std::max(largest, std::abs(L(0, 1)));
+  return largest;
 }
 
 template <int Dim>

@@ -179,11 +179,25 @@ double speed_of(const Drive& drive, double length) {
     case Control::stress:
       return drive.speed;
     case Control::strain:
-      return 2 * std::numbers::pi * drive.amplitude / drive.period * length;
+      return drive.period > 0 ? 2 * std::numbers::pi * drive.amplitude / drive.period * length : 0;
     case Control::rest:
       break;
   }
   return 0;
+}
+
+/// Length of a box of this height [m] along which a part moves its walls; of xy the height, across which it
+/// shears.
+double length_along(const Case& c, Part part, double height) {
+  const LoadingFrame frame = frame_of(c);
+  switch (component_of(part)) {
+    case 1:
+      return frame.aspect_y * height;
+    case 2:
+      return (is_in_space(c) ? frame.aspect : 1) * height;
+    default:
+      return height;
+  }
 }
 
 /// Of one grain between two walls [m].
@@ -281,13 +295,25 @@ double largest_named_stress(const Case& c) {
 double fastest_speed(const Case& c, double height) {
   double fastest = 0;
   for (const Stage& stage : c.stages)
+    for (const Drive& drive : stage.drives)
+      fastest = std::max(fastest, speed_of(drive, length_along(c, drive.part, height)));
+  return fastest;
+}
+
+double fastest_rate(const Case& c, double height) {
+  double fastest = 0;
+  for (const Stage& stage : stages_of(c)) {
+    const bool moves = std::any_of(stage.drives.begin(), stage.drives.end(), [](const Drive& drive) {
+      return drive.control != Control::stress && drive.control != Control::rest;
+    });
     for (const Drive& drive : stage.drives) {
-      const int component = component_of(drive.part);
-      const double aspect = component == 1                     ? frame_of(c).aspect_y
-                            : component == 2 && is_in_space(c) ? frame_of(c).aspect
-                                                               : 1;
-      fastest = std::max(fastest, speed_of(drive, aspect * height));
+      if (drive.control == Control::stress && moves) continue;  // it follows the others
+      const double length = length_along(c, drive.part, height);
+      const double speed = drive.control == Control::stress && drive.speed == 0 ? c.loading.wall_velocity
+                                                                                : speed_of(drive, length);
+      fastest = std::max(fastest, speed / length);
     }
+  }
   return fastest;
 }
 

@@ -33,5 +33,9 @@ double stress_beside_motion(const Case& the_case);
 double largest_named_stress(const Case& the_case);
 /// Speed of the walls, of the fastest stage of one's own in a box of this height [m/s].
 double fastest_speed(const Case& the_case, double height);
+/// The largest rate of strain, or of shear strain, that the loading of a case gives a box of this height (of
+/// one grain between walls: this distance) as it starts [1/s]. Walls that keep a stress come at their largest
+/// speed where nothing else moves; 0: nothing moves.
+double fastest_rate(const Case& the_case, double height);
 
 }  // namespace softgrain

@@ -109,7 +109,7 @@ constexpr std::array table{
         [](const Observation& o) { return o.shear && o.packing->stress(1, 1) != 0 ? Value(-o.packing->stress(0, 1) / o.packing->stress(1, 1)) : o.shear ? Value(0.0) : std::nullopt; }},
     Column{"stress_kinetic", "Pa", boxes, "half the trace of the motion's part", NUMBER("stress_kinetic")},
     Column{"inertial_number", "", boxes,
-        R"($I = \lvert\dot\varepsilon\rvert\,d\,\sqrt{\rho/p}$; below $10^{-3}$ loading is quasi-static (63). 0 while nothing touches, as in the first row)",
+        R"($I = \lvert\dot\varepsilon\rvert\,d\,\sqrt{\rho/p}$ of the fastest strain, along an axis or in shear; below $10^{-3}$ loading is quasi-static (63). 0 while nothing touches, as in the first row)",
         NUMBER("inertial_number")},
     Column{"anisotropy", "", boxes, "$a$ of the normals between grains (64)", NUMBER("anisotropy")},
     Column{"force_mean", "N/m", boxes, "mean normal force of the pairs", NUMBER("force_mean")},

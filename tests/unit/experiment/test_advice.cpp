@@ -47,3 +47,28 @@ TEST_CASE("how long a stress is kept is told in times of a wave through the box"
   c.experiment.model = GrainModel::rigid;
   CHECK(std::isinf(advise(c).hold));
 }
+
+TEST_CASE("the inertial number is that of the fastest strain, along whichever axis it is, or of shear") {
+  Case c;
+  c.experiment = {.loading = LoadingPath::stages, .model = GrainModel::mpm};
+  c.mpm.material = {.young_modulus = 1e7, .poisson_ratio = 0.45};
+  c.grain.density = 1000;
+  c.sample.smallest_diameter = c.sample.largest_diameter = 2e-3;
+  c.sample.grains = 20;
+  c.sample.aspect = 4;
+  const double time = 2e-3 * std::sqrt(1000 / 1e5);  // d sqrt(rho/p), p a hundredth of E
+  const auto number_of = [&](const Drive& drive) {
+    c.stages = {{.drives = {drive}, .until = {.time = 1e-3}}};
+    return advise(c).inertial_number;
+  };
+  const double height = box_height(c);
+  CHECK(std::abs(number_of({Part::yy, Control::velocity, -0.4}) / (0.4 / height * time) - 1) < 1e-12);
+  CHECK(std::abs(number_of({Part::xx, Control::velocity, 0.4}) / (0.4 / (4 * height) * time) - 1) < 1e-12);
+  CHECK(std::abs(number_of({Part::xx, Control::rate, 30}) / (30 * time) - 1) < 1e-12);
+  CHECK(std::abs(number_of({Part::xy, Control::rate, -50}) / (50 * time) - 1) < 1e-12);
+  CHECK(number_of({Part::yy, Control::rest}) == 0);
+  c.stages = {};
+  c.experiment.loading = LoadingPath::shear;
+  c.loading = {.wall_velocity = 1e-6, .confining_stress = 1e5, .shear_rate = 70, .max_shear = 1};
+  CHECK(std::abs(advise(c).inertial_number / (70 * time) - 1) < 1e-12);
+}
