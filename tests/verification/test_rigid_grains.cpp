@@ -236,3 +236,26 @@ TEST_CASE("both integrators press an elastic disk between rigid ones with the sa
   CHECK(by_explicit.bottom / implicit.bottom == doctest::Approx(1).epsilon(0.01));
   CHECK(by_explicit.approach / implicit.approach == doctest::Approx(1).epsilon(1e-6));
 }
+
+TEST_CASE("rigid grains alone that walls press in implicit steps balance their energy") {
+  Case c;
+  c.experiment = {.loading = LoadingPath::stages, .model = GrainModel::rigid};
+  c.mpm.cells = 4;
+  c.sample.grains = 8;
+  c.contact.friction = 0.3;
+  c.loading.wall_velocity = 0.2;
+  c.stages = {{.drives = {{Part::yy, Control::stress, 1e5}, {Part::xx, Control::stress, 5e4}},
+               .until = {.time = 4e-3}}};
+  for (const double friction : {0.3, 0.0}) {
+    c.contact.friction = friction;
+    Simulation simulation = test::simulation_of(complete_sample(c));
+    double error = 0;
+    while (!simulation.finished()) {
+      simulation.step();
+      error = std::max(error, std::abs(test::value_of(row_of(simulation.observe()), "energy_error")));
+    }
+    const auto row = test::next_row(simulation);
+    REQUIRE(test::value_of(row, "wall_work") > 0.01);
+    CHECK(error < 0.01 * test::value_of(row, "wall_work"));
+  }
+}

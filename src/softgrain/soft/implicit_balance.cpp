@@ -94,6 +94,7 @@ void ImplicitDynamics::add_work() {
     Wide internal = 0.0, inertia = 0.0, gravity = 0.0, damping = 0.0;
   };
   std::vector<Share> shares(grains.batches.size());
+  const std::vector<Vec<2>> force = contact_forces(grains, contacts, felt(), outline_.dt);
   const auto add_up = [&](int b) {
     const GrainBatch& batch = grains.batches[b];
     auto& [internal, inertia, gravity, damping] = shares[b];
@@ -107,7 +108,7 @@ void ImplicitDynamics::add_work() {
         damping += m * Wide(1 / outline_.dt) * dot(velocity_start_[b][i] - flight_velocity(b, i), moved);
       gravity += m * (options.gravity[0] * moved[0] + options.gravity[1] * moved[1]);
     }
-    if (batch.topology->rigid()) inertia = inertia_work_of_rigid(b);
+    if (batch.topology->rigid()) inertia = inertia_work_of_rigid(b, force);
   };
   share(add_up, [&](int b, Message& message) {
     message(shares[b]), message(held_[b].couple), message(held_[b].wanted);

@@ -88,15 +88,27 @@ void ImplicitDynamics::end_rigid(int b, double dt) {
                   batch.velocity);
 }
 
-/// Backward Euler's sum of (m (dv)^2 + I (dw)^2)/2.
-Wide ImplicitDynamics::inertia_work_of_rigid(int b) const {
+/// What backward Euler takes of a grain on which these forces act: (m (dv)^2 + I (dw)^2)/2, and where its
+/// arms are not those of the middle of the turn, the work of the forces along the chords of their places less
+/// that of their sum and couple, sum f_i . (r_i - r_i,n) - couple angle.
+Wide ImplicitDynamics::inertia_work_of_rigid(int b, std::span<const Vec<2>> force) const {
   const GrainBatch& batch = grains.batches[b];
-  const RigidPose before = rigid_pose(batch, start_[b]), now = rigid_pose(batch, batch.position);
-  const RigidTwist start = rigid_twist(grains, batch, start_[b], velocity_start_[b]);
-  const Wide rate = 1 / outline_.dt;
+  const WideVectors &x = batch.position, &x_n = start_[b];
+  const RigidPose before = rigid_pose(batch, x_n), now = rigid_pose(batch, x);
+  const RigidTwist start = rigid_twist(grains, batch, x_n, velocity_start_[b]);
+  const Wide rate = 1 / outline_.dt, angle = angle_between(before, now);
+  WideVectors outer(x.size());
+  grains.scatter_outline(force, batch, outer);
+  Wide chords = 0.0, couple = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec<2, Wide> r_n = x_n[i] - x_n[0], chord = x[i] - x[0] - r_n;
+    const Vec<2, Wide> arm = r_n + Wide(outline_.normals_at) * chord;
+    chords += dot(outer[i], chord);
+    couple += arm[0] * outer[i][1] - arm[1] * outer[i][0];
+  }
   return rigid_mass(grains, batch)
-      .energy({rate * (now.centre - before.centre) - start.velocity,
-               rate * angle_between(before, now) - start.spin});
+             .energy({rate * (now.centre - before.centre) - start.velocity, rate * angle - start.spin}) +
+         (chords - couple * angle);
 }
 
 }  // namespace softgrain

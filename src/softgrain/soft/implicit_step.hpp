@@ -167,7 +167,7 @@ class ImplicitDynamics {
   void correct_rigid(int b);
   void keep_rigid(int b);
   void end_rigid(int b, double dt);
-  Wide inertia_work_of_rigid(int b) const;
+  Wide inertia_work_of_rigid(int b, std::span<const Vec<2>> force) const;
   bool solve_contacts(double dt, SoftStepReport& report);
   Imbalance correct(int iteration, bool same_matrix);
   double largest_correction_of_grains();
