@@ -140,12 +140,12 @@ void ExplicitStep<Dim>::add_contact_work(double dt) {
   end_step_of_presses(box, contacts, felt(), dt, other_push);
 }
 
-/// mu of each, which stay while the contacts and the law do.
+/// mu of each, which stay while the contacts and the law do, unless corners limit them.
 template <int Dim>
 const std::vector<double>& ExplicitStep<Dim>::friction_of_contacts() {
   const FrictionByKind law = friction_by_kind();
-  if (friction_.size() != contacts.size() || !(law == friction_law_)) {
-    friction_ = law.template of<Dim>(grains, contacts);
+  if (law.follows_impulses() || friction_.size() != contacts.size() || !(law == friction_law_)) {
+    friction_ = law.template of<Dim>(grains, contacts, contacts, impulse);
     friction_law_ = law;
   }
   return friction_;

@@ -18,12 +18,19 @@ class FrictionByKind {
 
   double between(int kind, int other) const { return mu_.of(kind, other); }
   double at_walls(int kind) const { return mu_.of(kind, PairFriction::wall); }
-  /// mu of each contact.
+  /// Of a point that two walls of a corner press, mu against them is at most this (theory, section 11).
+  static constexpr double most_in_corners = 0.8;
+  /// mu of each contact. before: the contacts of the step before with their impulses, which tell the points
+  /// that walls of two axes press.
   template <int Dim>
-  std::vector<double> of(const GrainsOf<Dim>& grains, Contacts<Dim> contacts) const;
+  std::vector<double> of(const GrainsOf<Dim>& grains, Contacts<Dim> contacts, Contacts<Dim> before,
+                         Impulses<Dim> impulse_before) const;
+  /// Whether mu of a contact may change with the impulses, as some wall has more of it than corners take.
+  bool follows_impulses() const;
   bool operator==(const FrictionByKind&) const = default;
 
  private:
+  int kinds_ = 0;
   ByKinds<double> mu_;
 };
 

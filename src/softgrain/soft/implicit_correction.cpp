@@ -130,7 +130,7 @@ double ImplicitDynamics::unbalanced_force(std::span<const Vec<2>> contact_force)
 }
 
 std::vector<double> ImplicitDynamics::friction_of_contacts() const {
-  return friction_by_kind().of(grains, contacts);
+  return friction_by_kind().of<2>(grains, contacts, contacts_start_, impulse_start_);
 }
 
 double ImplicitDynamics::mean_contact_force(double dt) const {

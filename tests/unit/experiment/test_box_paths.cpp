@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+
+#include "softgrain/experiment/sample.hpp"
 #include "support/simulations.hpp"
 
 using namespace softgrain;
@@ -230,4 +232,43 @@ TEST_CASE("walls that keep a stress go on from a checkpoint bit for bit") {
     check_same_bits(whole->checkpoint(), resumed->checkpoint());
     CHECK(resumed->early_end() == whole->early_end());
   }
+}
+
+TEST_CASE("the inertial number of a box is that of the axis along which it strains fastest") {
+  Case c;
+  c.experiment = {.loading = LoadingPath::stages, .model = GrainModel::mpm};
+  c.mpm.cells = 4;
+  c.sample.placed = {{{1e-3, 1e-3}, 1e-3}};  // one grain that the walls touch
+  c.box = {.width = 2e-3, .height = 2e-3};
+  const Case still = complete_sample(c);
+  const auto number_of = [&](Part part) {
+    Case moved = still;
+    moved.stages = {{.drives = {{part, Control::rate, 40}}, .until = {.time = 1e-3}}};
+    Simulation simulation = test::simulation_of(moved);
+    test::advance(simulation, 3);
+    const auto row = test::next_row(simulation);
+    const double p = (test::value_of(row, "stress_xx") + test::value_of(row, "stress_yy")) / 2;
+    REQUIRE(p > 0);
+    return test::value_of(row, "inertial_number") / (40 * 2e-3 * std::sqrt(c.grain.density / p));
+  };
+  CHECK(std::abs(number_of(Part::yy) - 1) < 5e-3);  // the walls slow down within a step
+  CHECK(std::abs(number_of(Part::xx) - 1) < 5e-3);
+}
+
+TEST_CASE("a corner holds no vertex between two walls that come in, however much they rub") {
+  Case c = soft_packing(LoadingPath::isotropic);
+  c.mpm.cells = 4;
+  c.sample.grains = 8;
+  c.sample.packing_fraction = 0.7;
+  c.contact.wall_friction = 3;
+  c.loading = {.wall_velocity = 0.2, .max_strain = 0.202, .unload_at = {}};
+  Simulation simulation = test::simulation_of(c);
+  while (!simulation.finished()) {
+    simulation.begin_row();
+    simulation.step();
+  }
+  const auto row = row_of(simulation.observe());
+  const double top = test::value_of(row, "stress_top"), bottom = test::value_of(row, "stress_bottom");
+  CHECK(test::value_of(row, "stress_side") == doctest::Approx((top + bottom) / 2).epsilon(0.15));
+  CHECK(top == doctest::Approx(bottom).epsilon(0.15));
 }

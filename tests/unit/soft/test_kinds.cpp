@@ -109,3 +109,19 @@ TEST_CASE("what slides along a wall loses the friction of its kind times the imp
   CHECK(friction_felt<ExplicitDynamics>(ExplicitOptions{}, dt, static_cast<int>(3e-5 / dt)) ==
         doctest::Approx(0.05).epsilon(1e-6));
 }
+
+TEST_CASE("the friction of a point is limited where two walls of a corner pressed it") {
+  const auto disk = test::disk(3);
+  const SoftGrains grains({test::placed(disk, R, {R, R})}, make_law(MaterialLaw::neo_hookean, 1e7, 0.3),
+                          1000);
+  const FrictionByKind friction(1, 0.1, 2, {});
+  const auto at = [](int vertex, int wall) { return OutlineContact{.vertex = vertex, .wall = wall}; };
+  const std::vector<OutlineContact> contacts{at(0, 0), at(0, 2), at(1, 0), at(2, 0), at(2, 1), at(3, 0)};
+  const auto with = [&](std::vector<Vec<2>> impulse) {
+    return friction.of<2>(grains, contacts, contacts, impulse);
+  };
+  constexpr double most = FrictionByKind::most_in_corners;
+  using Values = std::vector<double>;
+  CHECK(with({{1, 0}, {1, 0}, {1, 0}, {1, 0}, {1, 0}, {0, 0}}) == Values{most, most, 2, 2, 2, 2});
+  CHECK(with({{1, 0}, {0, 0}, {1, 0}, {1, 0}, {1, 0}, {0, 0}}) == Values(6, 2));
+}
