@@ -13,6 +13,27 @@ constexpr double averaging_strain = 1e-3;
 
 std::int64_t steps_in(double time, double dt) { return std::llround(time / dt); }
 
+/// Have the walls of a stage that move as given gone as far as to its limit, where others give way before
+/// them?
+bool has_gone_to_limit(const Stage& stage, const LoadingFrame& frame,
+                       const std::array<double, 3>& length_at_start, double time) {
+  constexpr double rounding = 1e-6;
+  const auto strain_at = [&](int c, double length) { return frame.strain(c, length); };
+  const auto limit = limit_of(stage, {strain_at(0, length_at_start[0]), strain_at(1, length_at_start[1]),
+                                      strain_at(2, length_at_start[2])});
+  if (!limit) return false;
+  const int c = limit->component;
+  const double start = strain_at(c, length_at_start[c]), way = limit->strain - start;
+  for (const Drive& drive : stage.drives) {
+    if (!drive.is_given() || component_of(drive.part) != c) continue;
+    const double left = length_at_start[c] - drive.value * time;
+    if (drive.control == Control::velocity && !frame.is_shear(c) && left <= 0) return true;
+    const double gone = drive.control == Control::rate ? drive.value * time : strain_at(c, left) - start;
+    return std::abs(gone) >= (1 + rounding) * std::abs(way);
+  }
+  return false;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -151,7 +172,8 @@ void LoadingOf<Dim>::after_step(const Box<Dim>& box, double time, double dt, con
     note_past();
     note_unreached();
     leave_stage(stage_ + 1, box, time, dt);
-  } else if (is_at_limit(box)) {
+  } else if (is_at_limit(box) ||
+             has_gone_to_limit(stage_now(), frame_, length_at_stage_, time - stage_start_)) {
     ended_ = End::limit;
   }
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -8,8 +9,7 @@
 namespace softgrain {
 namespace {
 
-/// "stage 'press': stress_yy of 5e+06 Pa or packing_fraction 0.9", whatever ends a stage but times and
-/// strains.
+/// "stage 'press': stress_yy of 5e+06 Pa or packing_fraction 0.9", whatever ends a stage but times.
 std::string asked_of(const Stage& stage, std::size_t number, int dimension) {
   const Until& until = stage.until;
   std::string text;
@@ -17,6 +17,11 @@ std::string asked_of(const Stage& stage, std::size_t number, int dimension) {
   for (std::size_t p = 0; p < parts_with_stress; ++p)
     if (until.stress[p])
       add(fmt::format("stress_{} of {:.3g} Pa", name_of(static_cast<Part>(p), dimension), *until.stress[p]));
+  constexpr std::array<Part, 3> pairs{Part::yy, Part::xx, Part::xy};
+  for (std::size_t c = 0; c < pairs.size(); ++c)
+    if (until.strain[c])
+      add(c == 0 ? fmt::format("strain {:.4g}", *until.strain[c])
+                 : fmt::format("strain_{} {:.4g}", name_of(pairs[c], dimension), *until.strain[c]));
   if (until.packing_fraction) add(fmt::format("packing_fraction {:.4g}", *until.packing_fraction));
   if (until.overlap) add(fmt::format("overlap {:.3g}", *until.overlap));
   if (until.rest) add(fmt::format("rest {:.3g}", *until.rest));
@@ -105,8 +110,12 @@ template <int Dim>
 LoadingOutcome LoadingOf<Dim>::outcome_of_limit() const {
   if (ended_ != End::limit) return {};
   const Stage& stage = stage_now();
-  std::string text = fmt::format("{} was not reached by strain {:.3g}", asked_of(stage, stage_, Dim),
-                                 limit_of(stage, strains_at_stage())->strain);
+  const auto& strain = stage.until.strain;
+  const bool gave_way = std::ranges::any_of(strain, [](const auto& end) { return end.has_value(); });
+  std::string text = fmt::format("{} was not reached {} strain {:.3g}{}", asked_of(stage, stage_, Dim),
+                                 gave_way ? "while walls moved as far as" : "by",
+                                 limit_of(stage, strains_at_stage())->strain,
+                                 gave_way ? ", as walls that keep a stress gave way" : "");
   for (std::size_t p = 0; p < parts_with_stress; ++p)
     if (stage.until.stress[p]) text += fmt::format(": the largest stress was {:.3g} Pa", largest_[p]);
   return {.completed = false, .shortfall = text};

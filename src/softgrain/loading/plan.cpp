@@ -88,6 +88,20 @@ class Planner {
   std::array<double, 3> speed_{}, rate_{};  // at which walls come together [m/s], [1/s]
 };
 
+/// Does a strain end the stage that walls bring about whatever the grains do?
+bool ends_at_strain(const Stage& stage) {
+  for (int c = 0; c < 3; ++c) {
+    bool moves = false, gives_way = false;
+    for (const Drive& drive : stage.drives) {
+      if (drive.part != Part::all && component_of(drive.part) != c) continue;
+      moves = moves || stage.towards || (drive.is_given() && drive.value != 0);
+      gives_way = gives_way || drive.control == Control::stress;
+    }
+    if (stage.until.strain[c] && moves && !gives_way) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 double LoadingFrame::strain(int component, double length) const {
@@ -116,8 +130,7 @@ std::vector<PlannedStage> plan(std::span<const Stage> stages, const LoadingFrame
 }
 
 std::optional<StrainLimit> limit_of(const Stage& stage, const std::array<double, 3>& strain_at_start) {
-  if (stage.until.time || stage.until.strain[0] || stage.until.strain[1] || stage.until.strain[2])
-    return std::nullopt;
+  if (stage.until.time || ends_at_strain(stage)) return std::nullopt;
   for (const Drive& drive : stage.drives) {
     if (!drive.is_given() || drive.value == 0) continue;
     const int component = component_of(drive.part);

@@ -45,10 +45,31 @@ bool moves_by_itself(const Stage& stage) {
                      [](const Drive& drive) { return drive.is_given() && drive.value != 0; });
 }
 
-std::string endless(const Stage& stage) {
+/// Does a stage move a component, or may a stress?
+bool moves(const Stage& stage, int component) {
+  return std::any_of(stage.drives.begin(), stage.drives.end(), [&](const Drive& drive) {
+    const bool rests = drive.control == Control::rest || (drive.is_given() && drive.value == 0);
+    return !rests && (drive.part == Part::all || component_of(drive.part) == component);
+  });
+}
+
+std::string endless(const Stage& stage, int dimension) {
   if (stage.until == Until{}) return "it never ends: give until, as in until = { time = \"1 ms\" }";
-  if (stage.until.time || moves_by_itself(stage)) return "";
-  return "its walls rest or keep a stress, so it may never end: give until.time too";
+  if (stage.until.time) return "";
+  if (!moves_by_itself(stage))
+    return "its walls rest or keep a stress, so it may never end: give until.time too";
+  if (stage.until != Until{.strain = stage.until.strain}) return "";
+  constexpr std::array<Part, 3> pairs{Part::yy, Part::xx, Part::xy};
+  std::string_view still;
+  for (int c = 0; c < 3; ++c) {
+    if (!stage.until.strain[c]) continue;
+    if (moves(stage, c)) return "";
+    still = name_of(pairs[c], dimension);
+  }
+  return fmt::format(
+      "it never ends, as nothing moves {} to the strain that it waits for: move {} too, or give "
+      "the strain of what moves",
+      still, still);
 }
 
 /// As often as they are asked for, the stages from `first` to the end of the list once more.
@@ -140,7 +161,7 @@ std::vector<Stage> without_repeats(const std::vector<Stage>& stages) {
 
 std::string fault_of(const Stage& stage, int dimension) {
   if (std::string why = contradiction(stage, dimension); !why.empty()) return why;
-  if (std::string why = endless(stage); !why.empty()) return why;
+  if (std::string why = endless(stage, dimension); !why.empty()) return why;
   if (stage.repeat < 1) return "repeat must be 1 or more";
   if (!stage.repeat_from.empty() && stage.repeat == 1) return "repeat_from needs repeat = 2 or more";
   return "";

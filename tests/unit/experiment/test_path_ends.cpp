@@ -78,3 +78,19 @@ TEST_CASE("a packing fraction that is asked for at the end is met") {
     CHECK(test::value_of(test::next_row(*simulation), "phi_0") == doctest::Approx(0.313).epsilon(1e-9));
   }
 }
+
+TEST_CASE("walls that move against one that gives way stop short of their strain, and say so") {
+  Case c = case_of(LoadingPath::stages, GrainModel::mpm);
+  c.loading = {.wall_velocity = 1, .unload_at = {}};
+  c.contact.wall_friction = 0.3;
+  const Drive comes{Part::top, Control::velocity, 1}, gives_way{Part::bottom, Control::stress, 1e3};
+  c.stages = {{.name = "press", .drives = {comes, gives_way}, .until = {.strain = {2.0}}}};
+  Simulation simulation = test::simulation_of(c);
+  const double height = simulation.box().height();
+  const auto steps = static_cast<std::int64_t>(height / (1 * c.time.step)) + 1;
+  test::advance(simulation, steps);
+  CHECK(simulation.finished());
+  const LoadingOutcome outcome = simulation.outcome();
+  CHECK_FALSE(outcome.completed);
+  CHECK(outcome.shortfall.starts_with("stage 'press': strain 2 was not reached while walls moved as far as"));
+}

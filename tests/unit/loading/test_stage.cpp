@@ -194,6 +194,7 @@ TEST_CASE("stages that contradict themselves or may never end are refused") {
   CHECK(fault({yy, {.part = Part::xx}, {.part = Part::left}}, {.time = 1}).starts_with("xx and left"));
   CHECK(fault({{.part = Part::bottom}, {.part = Part::top}}, {.time = 1}).empty());
   CHECK(fault({yy}, {}).starts_with("it never ends: give until"));
+  CHECK(fault({yy}, {.strain = {std::nullopt, 0.2}}).starts_with("it never ends, as nothing moves xx"));
   const Drive keeps{.part = Part::xx, .control = Control::stress, .value = 1e6};
   CHECK(fault({keeps}, {.rest = 1e-3}).find("give until.time too") != std::string::npos);
   CHECK(fault({keeps, yy}, {.rest = 1e-3}).empty());  // it stops at a strain of 3
