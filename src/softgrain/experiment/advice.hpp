@@ -15,8 +15,8 @@ struct Advice {
   /// The stress at which the case is judged [Pa]: of one grain the material's own, E, the yield stress or
   /// sigma_I = F0/<a0>; in a box the one that the loading names, else a hundredth of the material's own.
   double stress = 0;
-  /// I = |d eps/dt| d sqrt(rho/p) at p = stress, with the fastest rate at the start (fastest_rate) and the mean
-  /// diameter; for one grain between walls v sqrt(rho/p). Loading is quasi-static below 1e-3; 0: nothing moves.
+  /// I = |d eps/dt| d sqrt(rho/p) at p = stress, with the fastest rate at the start (fastest_rate) and the
+  /// mean diameter; for one grain between walls v sqrt(rho/p). Quasi-static below 1e-3; 0: nothing moves.
   double inertial_number = 0;
   /// rho c v over the yield stress, v the speed of the walls, of grains that flow: the stress of a blow with
   /// that speed. Below 0.1 the grains are pressed, from 1 on they are struck. 0 where nothing yields.

@@ -111,7 +111,8 @@ LoadingOutcome LoadingOf<Dim>::outcome_of_limit() const {
   if (ended_ != End::limit) return {};
   const Stage& stage = stage_now();
   const auto& strain = stage.until.strain;
-  const bool gave_way = std::ranges::any_of(strain, [](const auto& end) { return end.has_value(); });
+  const bool gave_way =
+      std::any_of(strain.begin(), strain.end(), [](const auto& end) { return end.has_value(); });
   std::string text = fmt::format("{} was not reached {} strain {:.3g}{}", asked_of(stage, stage_, Dim),
                                  gave_way ? "while walls moved as far as" : "by",
                                  limit_of(stage, strains_at_stage())->strain,
