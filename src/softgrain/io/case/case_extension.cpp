@@ -19,7 +19,7 @@ bool is_further(double wanted, double begun) { return wanted == 0 || (begun != 0
 std::string why_no_extension(const Case& begun, const Case& wanted) {
   bool end_moved = false;
   for (const Key& key : case_keys()) {
-    if (si_value(begun, key) == si_value(wanted, key) || key.table() == "output") continue;
+    if (value_in_si(begun, key) == value_in_si(wanted, key) || key.table() == "output") continue;
     const bool is_end = key.name == "loading.max_strain" || key.name == "loading.max_packing_fraction" ||
                         key.name == "loading.max_stress";
     if (!is_end)
@@ -44,7 +44,7 @@ std::string why_other_grains(const Case& begun, const Case& wanted) {
        {"experiment.model", "experiment.dimension", "sample.grains", "mpm.cells", "mpm.formulation",
         "mpm.law", "bpm.primaries", "grain.shape", "grain.sides", "box.x", "box.y", "box.z"}) {
     const Key& key = *find_key(name);
-    if (si_value(begun, key) != si_value(wanted, key))
+    if (value_in_si(begun, key) != value_in_si(wanted, key))
       return fmt::format("{} was {}, not {}", name, written_value(begun, key), written_value(wanted, key));
   }
   return kinds_text(begun) != kinds_text(wanted) ? "its kinds of grains were others" : "";

@@ -68,8 +68,8 @@ class CaseReader {
     for (const Key& key : case_keys()) {
       const auto at = draft_.origins.find(key.name);
       if (at == draft_.origins.end() || covers_a_kind(key)) continue;
-      const std::string value = si_value(given_, key), held = si_value(draft_.the_case, key);
-      const bool repeats = value == si_value(Case{}, key) || (is_derived(key) && value == held);
+      const std::string value = value_in_si(given_, key), held = value_in_si(draft_.the_case, key);
+      const bool repeats = value == value_in_si(Case{}, key) || (is_derived(key) && value == held);
       if (at->second.set >= 0 || !repeats) names.push_back(key.name);
     }
     for (const std::string& name : keys_set_by_stages(draft_.the_case))

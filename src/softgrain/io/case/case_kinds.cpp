@@ -59,7 +59,7 @@ void for_each_value(const Case& c, int k, const Visit& visit) {
   for (const FormKey& form : written_keys()) {
     const std::string& key = form.keys.front();
     if (is_written(c, kind, key) && (c.sample.placed.empty() || !key.starts_with("sample.")))
-      visit(name_within(form), si_value(kind, *find_key(key)));
+      visit(name_within(form), value_in_si(kind, *find_key(key)));
   }
 }
 

@@ -107,7 +107,7 @@ std::string resolved_case_text(const Case& the_case) {
                [&](const Key& key) {
                  if (!the_case.kinds.empty() && is_key_of_kind(the_case, key.name)) return;
                  const std::string unit = si_unit_of(key);
-                 text += fmt::format("{} = {}{}\n", key.short_name(), si_value(the_case, key),
+                 text += fmt::format("{} = {}{}\n", key.short_name(), value_in_si(the_case, key),
                                      unit.empty() ? "" : "  # " + unit);
                });
   return text + kinds_text(the_case) + stages_text(the_case);
@@ -115,9 +115,10 @@ std::string resolved_case_text(const Case& the_case) {
 
 std::string case_json(const Case& the_case) {
   Json tables = Json::object();
-  for_each_key(
-      [&](const TableOfKeys& table) { tables[table.name] = Json::object(); },
-      [&](const Key& key) { tables[key.table()][key.short_name()] = Json::parse(si_value(the_case, key)); });
+  for_each_key([&](const TableOfKeys& table) { tables[table.name] = Json::object(); },
+               [&](const Key& key) {
+                 tables[key.table()][key.short_name()] = Json::parse(value_in_si(the_case, key));
+               });
   tables.update(Json::parse(kinds_json(the_case)));
   if (!the_case.stages.empty()) tables["stage"] = Json::parse(stages_json(the_case));
   return tables.dump(2);

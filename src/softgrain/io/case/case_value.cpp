@@ -292,6 +292,6 @@ std::string written_value(const Case& the_case, const Key& key) {
   return text_of(the_case, key, [&](double number) { return quantity_text(number, key.unit); });
 }
 
-std::string si_value(const Case& the_case, const Key& key) { return text_of(the_case, key, float_text); }
+std::string value_in_si(const Case& the_case, const Key& key) { return text_of(the_case, key, float_text); }
 
 }  // namespace softgrain

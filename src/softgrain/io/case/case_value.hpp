@@ -25,6 +25,6 @@ std::string si_unit_of(const Key& key);
 std::string written_value(const Case& the_case, const Key& key);
 
 /// The value as TOML in SI, shortest digits that read back bit for bit: `0.005`.
-std::string si_value(const Case& the_case, const Key& key);
+std::string value_in_si(const Case& the_case, const Key& key);
 
 }  // namespace softgrain

@@ -135,7 +135,7 @@ void FormReader::finish_kind(KindText& text) {
   for (const auto& [name, origin] : draft.origins) {
     const Key& key = *find_key(name);
     if (name != "sample.grains" && !key.acts.covers(draft.the_case) &&
-        si_value(draft.the_case, key) != si_value(Case{}, key))
+        value_in_si(draft.the_case, key) != value_in_si(Case{}, key))
       in_vain.push_back(name);
   }
   for (const std::string& note : notes_on_effect(draft.the_case, in_vain))

@@ -48,7 +48,7 @@ std::string another_value(const Case& the_case, const Key& key) {
     try {
       Case other = the_case;
       assign(other, key, parse_toml(std::string("value = ") + number).front().value);
-      if (si_value(other, key) != si_value(the_case, key)) return number;
+      if (value_in_si(other, key) != value_in_si(the_case, key)) return number;
     } catch (const UsageError&) {
       // the next one
     }
