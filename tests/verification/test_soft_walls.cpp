@@ -207,7 +207,7 @@ TEST_CASE("without friction contact gives no energy to a packing") {
   CHECK(least > -0.01 * dynamics.work.walls);  // with the normal of the end: -0.12
 }
 
-TEST_CASE("a slow lid that sweeps loose grains together does no work") {
+TEST_CASE("a slow wall that sweeps loose grains together does no work") {
   constexpr double speed = 1e-3, strain = 0.4;
   for (const std::uint64_t seed : {1, 2, 3}) {
     CAPTURE(seed);
