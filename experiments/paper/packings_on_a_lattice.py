@@ -82,8 +82,9 @@ def draw(curves, path):
     figure, axes = plt.subplots(1, 3, figsize=(8.2, 3), layout="constrained", gridspec_kw={"width_ratios": (1, 1, 0.55)})
     for (contact_on, cell, friction, grains, _), rows in sorted(curves.items()):
         strain, z, bottom = np.array(rows, float).T
-        style = {"color": COLOURS[contact_on], "lw": 0.7 * (float(grains) / 20) ** 0.35, "ls": "--" if float(friction) else "-",
-                 "alpha": 0.6 if float(cell) > 0.1 and float(grains) < 100 else 1,
+        papers = float(cell) < 0.1  # the paper's own cell
+        style = {"color": "#d55e00" if papers else COLOURS[contact_on], "lw": 0.7 * (float(grains) / 20) ** 0.35,
+                 "ls": "--" if float(friction) else "-", "alpha": 1 if papers or float(grains) > 100 else 0.6,
                  "label": f"{contact_on.replace('_', ' ')}, {grains} grains, {float(cell):.3f} R" + _friction(friction)}
         axes[0].plot(strain, z, **style)
         axes[1].plot(strain, bottom / 1e3, **style)
