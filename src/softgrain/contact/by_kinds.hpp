@@ -32,6 +32,7 @@ class ByKinds {
   const T& of(int kind, int other) const {
     return other == wall ? at_walls_[kind] : between_[kind * kinds_ + other];
   }
+  int kinds() const { return kinds_; }
   bool operator==(const ByKinds&) const = default;
 
  private:

@@ -27,10 +27,10 @@ std::unordered_map<int, int> axes_of_points(Contacts<Dim> contacts, Impulses<Dim
 
 FrictionByKind::FrictionByKind(int kinds, double between_grains, double at_walls,
                                std::span<const PairFriction> named)
-    : kinds_(kinds), mu_(friction_by_kinds(kinds, between_grains, at_walls, named)) {}
+    : mu_(friction_by_kinds(kinds, between_grains, at_walls, named)) {}
 
 bool FrictionByKind::follows_impulses() const {
-  for (int kind = 0; kind < kinds_; ++kind)
+  for (int kind = 0; kind < mu_.kinds(); ++kind)
     if (at_walls(kind) > most_in_corners) return true;
   return false;
 }

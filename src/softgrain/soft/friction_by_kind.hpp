@@ -30,7 +30,6 @@ class FrictionByKind {
   bool operator==(const FrictionByKind&) const = default;
 
  private:
-  int kinds_ = 0;
   ByKinds<double> mu_;
 };
 

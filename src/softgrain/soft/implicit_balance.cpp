@@ -29,8 +29,7 @@ void ImplicitDynamics::catch_problem(double dt) {
 /// would, and no spin. A slow step, sub-steps of it included, ends faster spins of touching grains: without
 /// friction nothing else does, and a grain that turns by a good part of itself in a step lets none converge
 /// (docs/decisions/0031). What this changes of the kinetic energy, backward Euler had taken.
-void ImplicitDynamics::balance_momentum(double dt) {
-  const std::vector<Vec<2>> force = contact_forces(grains, contacts, felt(), dt);
+void ImplicitDynamics::balance_momentum(double dt, std::span<const Vec<2>> contact_force) {
   const double t = step_of_matrix(dt);
   double fastest = 0;
   for (const Wall<2>& wall : box.walls) fastest = std::max(fastest, turn_over_walls * norm(wall.velocity));
@@ -39,7 +38,7 @@ void ImplicitDynamics::balance_momentum(double dt) {
   const auto balance = [&](int b) {
     GrainBatch& batch = grains.batches[b];
     WideVectors outer(batch.position.size());
-    grains.scatter_outline(force, batch, outer);
+    grains.scatter_outline(contact_force, batch, outer);
     const auto cross = [](const Vec<2, Wide>& u, const Vec<2, Wide>& v) { return u[0] * v[1] - u[1] * v[0]; };
     const int nodes = batch.topology->grid.nodes();
     Wide mass = 0.0, inertia = 0.0, spin = 0.0, kept_spin = 0.0, load = 0.0, kinetic = 0.0;
@@ -89,12 +88,11 @@ void ImplicitDynamics::balance_momentum(double dt) {
       work.inertia -= given[b][lane];
 }
 
-void ImplicitDynamics::add_work() {
+void ImplicitDynamics::add_work(std::span<const Vec<2>> contact_force) {
   struct Share {
     Wide internal = 0.0, inertia = 0.0, gravity = 0.0, damping = 0.0;
   };
   std::vector<Share> shares(grains.batches.size());
-  const std::vector<Vec<2>> force = contact_forces(grains, contacts, felt(), outline_.dt);
   const auto add_up = [&](int b) {
     const GrainBatch& batch = grains.batches[b];
     auto& [internal, inertia, gravity, damping] = shares[b];
@@ -108,7 +106,7 @@ void ImplicitDynamics::add_work() {
         damping += m * Wide(1 / outline_.dt) * dot(velocity_start_[b][i] - flight_velocity(b, i), moved);
       gravity += m * (options.gravity[0] * moved[0] + options.gravity[1] * moved[1]);
     }
-    if (batch.topology->rigid()) inertia = inertia_work_of_rigid(b, force);
+    if (batch.topology->rigid()) inertia = inertia_work_of_rigid(b, contact_force);
   };
   share(add_up, [&](int b, Message& message) {
     message(shares[b]), message(held_[b].couple), message(held_[b].wanted);

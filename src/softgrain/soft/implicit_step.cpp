@@ -269,8 +269,9 @@ ImplicitDynamics::Failure ImplicitDynamics::finish(double dt, SoftStepReport& re
   if (caught) catch_problem(dt);
   flow(dt);
   if (slow(dt)) hold_touching();
-  balance_momentum(dt);
-  add_work();
+  const std::vector<Vec<2>> force = contact_forces(grains, contacts, felt(), dt);
+  balance_momentum(dt, force);
+  add_work(force);
   end_step_of_presses(box, contacts, felt(), dt);
   carry_to(found_);
   contacts = std::move(found_);

@@ -180,13 +180,13 @@ class ImplicitDynamics {
   void catch_problem(double dt);
   void flow(double dt);
   Failure finish(double dt, SoftStepReport& report);
-  void balance_momentum(double dt);
+  void balance_momentum(double dt, std::span<const Vec<2>> contact_force);
   /// v_n and what damping changes of it, of a node of a batch, counted from first_here on.
   Vec<2, Wide> flight_velocity(std::size_t b, std::size_t i) const {
     const Vec<2, Wide>& v = velocity_start_[b][i];
     return options.damping > 0 ? v + damping_.velocity_change(start_[b][i], v) : v;
   }
-  void add_work();
+  void add_work(std::span<const Vec<2>> contact_force);
   void take_back();
   [[noreturn]] void give_up(Failure failure, double dt) const;
   FrictionByKind friction_by_kind() const {
